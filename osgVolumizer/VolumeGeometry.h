@@ -1,0 +1,60 @@
+#pragma once
+
+#include "core/Export.h"
+#include "core/geometry/TetraSet.h"
+
+#include <osg/Drawable>
+
+#include <memory>
+
+namespace osgVolumizer {
+
+class Voxels;
+
+/// The region of space that is filled: tetrahedra, in the object frame. It is drawn with the nearest
+/// VolumeAppearance above it; transforms may stand between the two. Without explicit voxel coordinates
+/// a vertex at p shows the voxel at (p - origin)/spacing.
+///
+/// A Drawable rather than a plain Node, so that OSG's Optimizer keeps transforms above it, and never an
+/// osg::Geometry, so that it does not flatten them into it.
+class OSGVOLUMIZER_EXPORT VolumeGeometry : public osg::Drawable
+{
+public:
+    META_Node(osgVolumizer, VolumeGeometry)
+
+    /// How a box is cut into tetrahedra.
+    enum BoxTessellation { FIVE, TWENTY_FOUR, ENCLOSING };
+
+    VolumeGeometry();
+    VolumeGeometry(const VolumeGeometry& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
+
+    /// The box of all voxels.
+    static osg::ref_ptr<VolumeGeometry> createBox(const Voxels& voxels);
+    /// Any box, in the object frame. ENCLOSING is one tetrahedron around the box, which the bricks'
+    /// clip boxes cut down to the voxels; it fills the box only where the voxels do.
+    static osg::ref_ptr<VolumeGeometry> createBox(const osg::BoundingBoxd& box,
+                                                  BoxTessellation tessellation = FIVE);
+
+    using TetraSetPtr = std::shared_ptr<const core::TetraSet>;
+    /// Takes the tetrahedra; refused (see core::TetraSet::validate) leaves the old ones in place.
+    Status setTetraSet(core::TetraSet tetraSet);
+    /// Never null. Immutable: a frame under way keeps the one it has.
+    TetraSetPtr getTetraSet() const;
+    /// Grows with every setTetraSet(). Thread safe.
+    unsigned getModifiedCount() const;
+
+    void accept(osg::NodeVisitor& visitor) override;
+    osg::BoundingBox computeBoundingBox() const override;
+    osg::BoundingSphere computeBound() const override;
+    /// Draws nothing: volumes are drawn from per-view leaves, made in accept().
+    void drawImplementation(osg::RenderInfo& renderInfo) const override;
+
+protected:
+    ~VolumeGeometry() override;
+
+private:
+    struct Private;
+    std::unique_ptr<Private> _private;
+};
+
+} // namespace osgVolumizer

@@ -1,0 +1,10 @@
+# Writes every shader file into one C++ source: std::string osgVolumizer::render::shaderSource(name).
+set(text "#include <string>\n\nnamespace osgVolumizer {\nnamespace render {\n\n")
+string(APPEND text "std::string shaderSource(const std::string& name)\n{\n")
+foreach(shader ${SHADERS})
+  get_filename_component(name ${shader} NAME)
+  file(READ ${shader} source)
+  string(APPEND text "    if (name == \"${name}\") return R\"glsl(${source})glsl\";\n")
+endforeach()
+string(APPEND text "    return {};\n}\n\n} // namespace render\n} // namespace osgVolumizer\n")
+file(WRITE ${OUTPUT} "${text}")
