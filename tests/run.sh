@@ -34,7 +34,7 @@ run_suite() {
 run_fuzz() {
     local target corpus
     cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ \
-        -DOSGVOLUMIZER_BUILD_FUZZ=ON -DOSGVOLUMIZER_BUILD_EXAMPLES=OFF || exit 1
+        -DOSGVOLUMIZER_BUILD_FUZZ=ON -DOSGVOLUMIZER_SANITIZE=fuzzer-no-link,address,undefined || exit 1
     cmake --build build/fuzz -j "$jobs" --target fuzz || exit 1
     for target in build/fuzz/bin/*Fuzz; do
         corpus=build/fuzz/corpus/$(basename "$target")
@@ -50,8 +50,11 @@ install_missing $BUILD_PACKAGES libgtest-dev libegl-dev libgl1-mesa-dri openscen
 
 run_suite release
 run_suite asan-ubsan
-if command -v clang++ >/dev/null && [ -e tests/fuzz/CMakeLists.txt ]; then
+if echo 'extern "C" int LLVMFuzzerTestOneInput(const char*, unsigned long) { return 0; }' |
+    clang++ -x c++ -fsanitize=fuzzer,address - -o /dev/null 2>/dev/null; then
     run_fuzz
+else
+    echo "No clang with libFuzzer: the fuzz targets were left out."
 fi
 
 # The closing lines of ctest once more, so that they are the last thing on the screen.
