@@ -78,6 +78,30 @@ core::TetraSet mapped(const core::TetraSet& set, const glm::dmat4& map, bool kee
     return result;
 }
 
+// The index of the axis that a normal lies along, or -1.
+int axisOf(const glm::dvec3& n)
+{
+    for (int a = 0; a < 3; ++a)
+        if (n[a] != 0.0 && n[(a + 1) % 3] == 0.0 && n[(a + 2) % 3] == 0.0) return a;
+    return -1;
+}
+
+// Bounds take care of axis-aligned half-spaces; of the others only those that cut the box matter.
+void splitRegion(PreparedGeometry& prepared, const core::Box3d& voxelExtent)
+{
+    prepared.regionBox = intersection(prepared.regionBox, voxelExtent);
+    if (!prepared.region) return;
+    for (const core::Plane& plane : prepared.region->planes) {
+        bool cuts = axisOf(plane.normal) < 0;
+        if (cuts) {
+            cuts = false;
+            for (int i = 0; i < 8; ++i)
+                cuts = cuts || plane.distance(prepared.regionBox.corner(i)) < 0.0;
+        }
+        if (cuts) prepared.obliquePlanes.push_back(plane);
+    }
+}
+
 std::shared_ptr<const PreparedGeometry> prepare(const core::TetraSet& set, const Voxels* voxels)
 {
     auto result = std::make_shared<PreparedGeometry>();
@@ -97,7 +121,11 @@ std::shared_ptr<const PreparedGeometry> prepare(const core::TetraSet& set, const
         result->tetras = mapped(set, glm::translate(glm::dmat4(1.0), -center), true);
     }
     result->bounds = result->tetras.bounds();
-    if (result->voxelFrame || !voxels) result->region = core::convexRegion(result->tetras);
+    result->regionBox = result->bounds;
+    if (result->voxelFrame && voxels) {
+        result->region = core::convexRegion(result->tetras);
+        splitRegion(*result, voxels->getLayout().extent());
+    }
     return result;
 }
 

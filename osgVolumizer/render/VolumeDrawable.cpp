@@ -81,7 +81,6 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
         uniforms.set("maximumSteps", look.maximumSteps);
         uniforms.set("planes", look.planes);
     } else {
-        uniforms.set("spacing", static_cast<float>(look.step));
         uniforms.set("surfaceNormal", glm::vec3(look.surfaceNormal));
         if (look.features.spherical) uniforms.set("rayDirectionEye", rays.directionEye);
     }
@@ -106,7 +105,7 @@ class BoundMesh
 {
 public:
     BoundMesh(osg::State& state, osg::GLExtensions& gl, ContextResources& resources,
-              const VolumeMesh& mesh)
+              const VolumeMesh& mesh, float spacing)
         : _state(state), _gl(gl)
     {
         state.lazyDisablingOfVertexAttributes();
@@ -118,15 +117,19 @@ public:
         enable(ATTRIBUTE_POSITION, 3, mesh.positionOffset, mesh.stride);
         if (mesh.slabOffset >= 0) enable(ATTRIBUTE_SLAB, 2, mesh.slabOffset, mesh.stride);
         if (mesh.voxelCoordinateOffset >= 0)
-            enable(ATTRIBUTE_SLAB, 3, mesh.voxelCoordinateOffset, mesh.stride);
+            enable(ATTRIBUTE_VOXEL_COORDINATE, 3, mesh.voxelCoordinateOffset, mesh.stride);
         if (mesh.colorOffset >= 0)
             enable(ATTRIBUTE_COLOR, mesh.colorSize, mesh.colorOffset, mesh.stride);
+        if (mesh.spacingOffset >= 0)
+            enable(ATTRIBUTE_SPACING, 1, mesh.spacingOffset, mesh.stride);
+        else
+            gl.glVertexAttrib1f(ATTRIBUTE_SPACING, spacing);
     }
     BoundMesh(const BoundMesh&) = delete;
     BoundMesh& operator=(const BoundMesh&) = delete;
     ~BoundMesh()
     {
-        for (unsigned a = 0; a < 3; ++a)
+        for (unsigned a = 0; a < ATTRIBUTE_COUNT; ++a)
             if (_enabled[a]) _gl.glDisableVertexAttribArray(a);
         _gl.glBindBuffer(GL_ARRAY_BUFFER_ARB, 0);
         _gl.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER_ARB, 0);
@@ -146,7 +149,7 @@ private:
 
     osg::State& _state;
     osg::GLExtensions& _gl;
-    bool _enabled[3] = {false, false, false};
+    bool _enabled[ATTRIBUTE_COUNT] = {};
 };
 
 void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms, const BrickBatch& batch)
@@ -201,7 +204,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
         setOpaqueDepth(state, uniforms, *rays, resources->accumulation);
     if (_look->table) state.applyTextureAttribute(UNIT_TABLE, _look->table.get());
     {
-        const BoundMesh bound(state, gl, *resources, *_mesh);
+        const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
         for (const BrickBatch& batch : _mesh->batches) drawBatch(renderInfo, uniforms, batch);
     }
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",

@@ -34,6 +34,7 @@ struct VolumeMesh
 {
     int stride = 3; ///< floats a vertex
     int slabOffset = -1, voxelCoordinateOffset = -1, colorOffset = -1, colorSize = 0;
+    int spacingOffset = -1; ///< slices with a thickness each; else all have VolumeLook::step
     int positionOffset = 0;
     std::vector<float> vertices;
     std::vector<unsigned> indices;

@@ -28,7 +28,14 @@ struct ProgramFeatures
 /// Texture units of the samplers.
 enum TextureUnit : unsigned { UNIT_VOXELS = 0, UNIT_TABLE = 1, UNIT_OPAQUE_DEPTH = 2 };
 /// Vertex attributes.
-enum Attribute : unsigned { ATTRIBUTE_POSITION = 0, ATTRIBUTE_SLAB = 1, ATTRIBUTE_COLOR = 2 };
+enum Attribute : unsigned {
+    ATTRIBUTE_POSITION,
+    ATTRIBUTE_SLAB,             ///< slabs: nearest and farthest depth
+    ATTRIBUTE_VOXEL_COORDINATE, ///< slices
+    ATTRIBUTE_COLOR,
+    ATTRIBUTE_SPACING, ///< slices: thickness of the layer
+    ATTRIBUTE_COUNT
+};
 
 /// The state that a volume with these features is drawn with: program, blending, depth test without
 /// writes, transparent bin. Shared by all volumes, views and contexts. Thread safe.

@@ -6,7 +6,7 @@ in vec4 vertexColor;
 #endif
 out vec4 fragColor;
 
-uniform float spacing; // between surfaces
+flat in float spacing;
 uniform vec3 surfaceNormal; // spacing is counted along it (frame units); planes
 #ifdef SPHERICAL
 uniform mat3 rayDirectionEye;

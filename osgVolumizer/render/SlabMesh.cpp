@@ -1,0 +1,127 @@
+#include "MeshBuilder.h"
+
+#include "../core/geometry/ConvexPolytope.h"
+#include "../core/sampling/ViewHelpers.h"
+
+#include <glm/gtc/matrix_access.hpp>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+constexpr int SLAB_STRIDE = 5; // position, nearest and farthest depth
+
+// The depth of a frame point as a plane: distance(p) = depth(p) - offset, eye units.
+core::Plane depthPlane(const glm::dmat4& toEye, double offset)
+{
+    const glm::dvec4 z = glm::row(toEye, 2);
+    return {-glm::dvec3(z), -z.w - offset};
+}
+
+core::Plane flipped(const core::Plane& p) { return {-p.normal, -p.offset}; }
+
+// Whether a face is seen from outside: the eye (w = 0: the direction to it) is in front of it.
+bool facesEye(const core::Plane& inward, const glm::dvec4& eye)
+{
+    return glm::dot(inward.normal, glm::dvec3(eye)) + inward.offset * eye.w < 0.0;
+}
+
+class SlabMeshBuilder
+{
+public:
+    SlabMeshBuilder(const VolumeInstance& volume, const core::View& view, const glm::dvec4& eye)
+        : _volume(volume), _view(view), _eye(eye), _mesh(std::make_shared<VolumeMesh>())
+    {
+        _mesh->stride = SLAB_STRIDE;
+        _mesh->slabOffset = 3;
+    }
+
+    void append(const DepthInterval& interval)
+    {
+        for (const SelectedBrick& brick : _volume.bricks) appendBrick(brick, interval);
+    }
+    std::shared_ptr<const VolumeMesh> take() { return std::move(_mesh); }
+
+private:
+    // Depths of a box, to leave out the bricks and the cuts that an interval does not need.
+    DepthInterval depthsOf(const core::Box3d& box) const
+    {
+        DepthInterval r{std::numeric_limits<double>::infinity(),
+                        -std::numeric_limits<double>::infinity()};
+        for (int i = 0; i < 8; ++i) {
+            const double d = depthPlane(_view.toEye, 0.0).distance(box.corner(i));
+            r.nearDepth = std::min(r.nearDepth, d);
+            r.farDepth = std::max(r.farDepth, d);
+        }
+        return r;
+    }
+
+    void appendBrick(const SelectedBrick& brick, const DepthInterval& interval)
+    {
+        const DepthInterval depths = depthsOf(brick.box);
+        if (depths.farDepth <= interval.nearDepth || depths.nearDepth >= interval.farDepth) return;
+        _polytope.setBox(brick.box);
+        for (const core::Plane& plane : _volume.prepared->obliquePlanes) _polytope.clip(plane);
+        // A little beyond, so that the cap on the near plane itself is not cut off by GL.
+        const double nearest = interval.nearDepth + 1e-5 * std::abs(interval.nearDepth);
+        if (depths.nearDepth < nearest) _polytope.clip(depthPlane(_view.toEye, nearest));
+        if (depths.farDepth > interval.farDepth)
+            _polytope.clip(flipped(depthPlane(_view.toEye, interval.farDepth)));
+        if (_polytope.empty()) return;
+
+        BrickBatch batch;
+        batch.texture = brick.texture.texture;
+        batch.textureBytes = brick.texture.bytes;
+        batch.clipMin = glm::vec3(brick.box.min);
+        batch.clipMax = glm::vec3(brick.box.max);
+        batch.textureScale = brick.textureScale;
+        batch.textureOffset = brick.textureOffset;
+        batch.firstIndex = static_cast<unsigned>(_mesh->indices.size());
+        appendFaces(interval);
+        batch.indexCount = static_cast<unsigned>(_mesh->indices.size()) - batch.firstIndex;
+        if (batch.indexCount > 0) _mesh->batches.push_back(batch);
+    }
+
+    void appendFaces(const DepthInterval& interval)
+    {
+        const double reference = _volume.look->referenceDepth;
+        for (std::size_t f = 0; f < _polytope.faceCount(); ++f) {
+            if (!facesEye(_polytope.facePlane(f), _eye)) continue;
+            const auto first = static_cast<unsigned>(_mesh->vertices.size() / SLAB_STRIDE);
+            unsigned count = 0;
+            for (const std::uint32_t v : _polytope.face(f)) {
+                const glm::vec3 p(_polytope.vertex(v));
+                _mesh->vertices.insert(_mesh->vertices.end(),
+                                       {p.x, p.y, p.z,
+                                        static_cast<float>(interval.nearDepth - reference),
+                                        static_cast<float>(interval.farDepth - reference)});
+                ++count;
+            }
+            for (unsigned i = 2; i < count; ++i)
+                _mesh->indices.insert(_mesh->indices.end(), {first, first + i - 1, first + i});
+            ++_mesh->faceCount;
+        }
+    }
+
+    const VolumeInstance& _volume;
+    const core::View& _view;
+    const glm::dvec4 _eye;
+    core::ConvexPolytope _polytope;
+    std::shared_ptr<VolumeMesh> _mesh;
+};
+
+} // namespace
+
+std::shared_ptr<const VolumeMesh> slabMesh(const VolumeInstance& volume, const core::View& view,
+                                           const std::vector<DepthInterval>& farToNear)
+{
+    const Result<glm::dvec4> eye = core::eyePosition(view);
+    if (!eye) return std::make_shared<VolumeMesh>();
+    SlabMeshBuilder builder(volume, view, *eye);
+    for (const DepthInterval& interval : farToNear) builder.append(interval);
+    return builder.take();
+}
+
+} // namespace render
+} // namespace osgVolumizer
