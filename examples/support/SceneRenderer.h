@@ -1,0 +1,83 @@
+#pragma once
+
+#include "FloatImage.h"
+#include "PictureTarget.h"
+#include "SurfacelessGraphicsContext.h"
+
+#include <osgViewer/Viewer>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace osgVolumizer {
+namespace support {
+
+/// How a scene is looked at, and what is rendered to.
+struct RenderOptions
+{
+    int width = 256;
+    int height = 256;
+    osg::Matrixd view;       ///< world to eye, looking down -z
+    osg::Matrixd projection; ///< near and far are moved to the scene while computeNearFar
+    osg::Vec4 background{0.0f, 0.0f, 0.0f, 0.0f};
+    unsigned frames = 1; ///< the picture is the last one's
+    osgViewer::ViewerBase::ThreadingModel threading = osgViewer::ViewerBase::SingleThreaded;
+    PictureTarget::Format format = PictureTarget::FLOAT32;
+    OffscreenContext::Profile profile = OffscreenContext::COMPATIBILITY;
+    bool depth = false; ///< also read the depth buffer
+    bool light = false; ///< OSG's head light
+    bool computeNearFar = true;
+
+    RenderOptions() { perspective(30.0); }
+    RenderOptions& size(int w, int h);
+    RenderOptions& lookAt(const osg::Vec3d& eye, const osg::Vec3d& center, const osg::Vec3d& up);
+    /// Vertical field of view in degrees, at the present size's aspect ratio.
+    RenderOptions& perspective(double fovyDegrees);
+    /// Half the height of the view, in world units, at the present size's aspect ratio.
+    RenderOptions& orthographic(double halfHeight);
+    /// Looks along +y, z up, from where the bounding sphere fits the view.
+    RenderOptions& frameScene(const osg::BoundingSphere& bound);
+};
+
+/// Renders a scene frame by frame in one context of its own, which lives as long as the renderer:
+/// the second frame finds what the first one cached.
+class SceneRenderer
+{
+public:
+    SceneRenderer(osg::Node* scene, const RenderOptions& options);
+    ~SceneRenderer();
+
+    /// Not ok where there is no GL, or a frame did not finish.
+    const Status& status() const { return _status; }
+    /// Renders options().frames frames; the last one's picture, empty on failure.
+    FloatImage render();
+    /// May be changed between calls of render(); size, format, profile and threading stay as they
+    /// were.
+    RenderOptions& options() { return _options; }
+    osgViewer::Viewer& viewer() { return *_viewer; }
+
+    /// Milliseconds of each frame of the last render(), from the update traversal to the end of
+    /// glFinish. Frames of the multi-threaded models overlap, and their times mean nothing.
+    const std::vector<double>& milliseconds() const { return _milliseconds; }
+    /// Attributes of the last frame in the statistics of camera and viewer whose names start with
+    /// "osgVolumizer ". Collection is always on.
+    std::map<std::string, double> counters() const;
+    /// The first GL error met at the end of a frame, or 0.
+    unsigned glError() const { return _target->glError(); }
+
+private:
+    void applyView();
+
+    RenderOptions _options;
+    Status _status;
+    osg::ref_ptr<osgViewer::Viewer> _viewer;
+    osg::ref_ptr<PictureTarget> _target;
+    std::vector<double> _milliseconds;
+};
+
+/// One picture of a scene; empty where there is no GL.
+FloatImage renderScene(osg::Node* scene, const RenderOptions& options);
+
+} // namespace support
+} // namespace osgVolumizer

@@ -1,0 +1,63 @@
+#include "SurfacelessGraphicsContext.h"
+
+namespace osgVolumizer {
+namespace support {
+
+SurfacelessGraphicsContext::SurfacelessGraphicsContext(int width, int height,
+                                                       OffscreenContext::Profile profile)
+{
+    _traits = new osg::GraphicsContext::Traits;
+    _traits->x = _traits->y = 0;
+    _traits->width = width;
+    _traits->height = height;
+    _traits->doubleBuffer = false;
+    _traits->windowDecoration = false;
+
+    auto context = OffscreenContext::create(profile);
+    _status = context.status;
+    _context = std::move(context.value);
+
+    setState(new osg::State);
+    getState()->setGraphicsContext(this);
+    getState()->setContextID(osg::GraphicsContext::createNewContextID());
+}
+
+SurfacelessGraphicsContext::~SurfacelessGraphicsContext()
+{
+    close(true);
+}
+
+bool SurfacelessGraphicsContext::realizeImplementation()
+{
+    _realized = valid();
+    return _realized;
+}
+
+void SurfacelessGraphicsContext::closeImplementation()
+{
+    _realized = false;
+    _context.reset();
+}
+
+bool SurfacelessGraphicsContext::makeCurrentImplementation()
+{
+    return _context && _context->makeCurrent();
+}
+
+bool SurfacelessGraphicsContext::makeContextCurrentImplementation(osg::GraphicsContext*)
+{
+    return makeCurrentImplementation();
+}
+
+bool SurfacelessGraphicsContext::releaseContextImplementation()
+{
+    return _context && _context->release();
+}
+
+bool SurfacelessGraphicsContext::isSameKindAs(const Object* object) const
+{
+    return dynamic_cast<const SurfacelessGraphicsContext*>(object) != nullptr;
+}
+
+} // namespace support
+} // namespace osgVolumizer
