@@ -1,57 +1,14 @@
+#include "TestGeometry.h"
 #include "osgVolumizer/core/sampling/Polygonize.h"
 
-#include <glm/geometric.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include <memory>
 
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
+using namespace osgVolumizer::testing;
 
-namespace {
-
-/// A unit-spaced box in five tetrahedra.
-TetraSet makeBox(const glm::dvec3& min, const glm::dvec3& max)
-{
-    TetraSet set;
-    set.vertices.resize(8);
-    const Box3d box{min, max};
-    for (int i = 0; i < 8; ++i)
-        set.vertices.setPosition(std::size_t(i), box.corner(i));
-    set.indices = {0, 3, 5, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 5, 0, 6, 7, 3, 6, 5};
-    return set;
-}
-
-View viewAlong(const glm::dvec3& direction)
-{
-    View view;
-    const glm::dvec3 up =
-        std::abs(glm::normalize(direction).z) > 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
-    view.toEye = glm::lookAt(glm::normalize(direction) * -300.0, glm::dvec3(0.0), up);
-    view.projection = glm::perspective(1.0, 1.0, 1.0, 1000.0);
-    return view;
-}
-
-double area(const FaceSet& faces, const FaceRange& range, glm::dvec3* sum = nullptr)
-{
-    glm::dvec3 total(0.0);
-    double r = 0.0;
-    for (std::uint32_t f = range.firstFace; f < range.firstFace + range.faceCount; ++f) {
-        glm::dvec3 n(0.0);
-        const std::uint32_t first = faces.faceOffsets[f];
-        const glm::dvec3 a = faces.position(faces.indices[first]);
-        for (std::uint32_t i = first + 1; i + 1 < faces.faceOffsets[f + 1]; ++i)
-            n += 0.5 * glm::cross(faces.position(faces.indices[i]) - a,
-                                  faces.position(faces.indices[i + 1]) - a);
-        total += n;
-        r += glm::length(n);
-    }
-    if (sum) *sum += total;
-    return r;
-}
-
-} // namespace
 
 TEST(Polygonize, HeadOnGivesNumberOfVoxelsOverPeriod)
 {
