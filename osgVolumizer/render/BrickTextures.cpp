@@ -114,14 +114,9 @@ BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick, bool linear)
 
 osg::ref_ptr<BrickTextures> BrickTextures::of(const Voxels& voxels)
 {
-    static std::mutex mutex;
-    std::lock_guard<std::mutex> lock(mutex);
-    osg::ref_ptr<BrickTextures> textures = dynamic_cast<BrickTextures*>(voxels.getRenderData());
-    if (!textures) {
-        textures = new BrickTextures;
-        voxels.setRenderData(textures);
-    }
-    return textures;
+    const auto data = voxels.getOrCreateRenderData(
+        []() -> osg::ref_ptr<Voxels::RenderData> { return new BrickTextures; });
+    return static_cast<BrickTextures*>(data.get());
 }
 
 BrickTexture BrickTextures::get(const Voxels& voxels, std::int64_t brick, bool linear)

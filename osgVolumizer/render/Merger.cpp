@@ -6,6 +6,9 @@
 #include "MeshBuilder.h"
 #include "Statistics.h"
 
+#include "../core/ordering/BrickOrder.h"
+#include "../core/sampling/ViewHelpers.h"
+
 #include <osg/Depth>
 #include <osgUtil/CullVisitor>
 #include <osgUtil/RenderStage>
@@ -13,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace osgVolumizer {
 namespace render {
@@ -46,6 +50,23 @@ bool findDepthRange(VolumeInstance& volume, const core::View& view)
     volume.nearDepth = std::max(nearest, nearPlane);
     volume.farDepth = farthest;
     return volume.nearDepth < volume.farDepth;
+}
+
+// Puts the bricks in visibility order, far to near.
+void sortBricks(VolumeInstance& volume, const core::View& view)
+{
+    if (volume.bricks.size() < 2 || !volume.prepared->voxelFrame) return;
+    const Result<glm::dvec4> eye = core::eyePosition(view);
+    if (!eye) return;
+    std::vector<std::int64_t> order;
+    std::map<std::int64_t, SelectedBrick> byIndex;
+    for (SelectedBrick& brick : volume.bricks) {
+        order.push_back(brick.index);
+        byIndex.emplace(brick.index, std::move(brick));
+    }
+    core::BrickOrder(volume.appearance->getVoxels()->getLayout()).sort(*eye, order);
+    volume.bricks.clear();
+    for (std::int64_t index : order) volume.bricks.push_back(std::move(byIndex.at(index)));
 }
 
 osg::ref_ptr<osg::StateSet> accumulationStateSet()
@@ -82,6 +103,7 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
         if (!volume->leaf) continue;
         const core::View view{toGlm(*volume->leaf->_modelview), toGlm(*volume->leaf->_projection)};
         if (!findDepthRange(*volume, view)) continue;
+        sortBricks(*volume, view);
         auto look = std::make_shared<VolumeLook>(*volume->look);
         std::shared_ptr<const VolumeMesh> mesh;
         if (look->features.slab) {

@@ -21,11 +21,8 @@ core::Plane depthPlane(const glm::dmat4& toEye, double offset)
 
 core::Plane flipped(const core::Plane& p) { return {-p.normal, -p.offset}; }
 
-// Whether a face is seen from outside: the eye (w = 0: the direction to it) is in front of it.
-bool facesEye(const core::Plane& inward, const glm::dvec4& eye)
-{
-    return glm::dot(inward.normal, glm::dvec3(eye)) + inward.offset * eye.w < 0.0;
-}
+// Tag of the faces that clipping makes; nobody asks which plane made them.
+constexpr int CUT = 6;
 
 class SlabMeshBuilder
 {
@@ -62,12 +59,12 @@ private:
         const DepthInterval depths = depthsOf(brick.box);
         if (depths.farDepth <= interval.nearDepth || depths.nearDepth >= interval.farDepth) return;
         _polytope.setBox(brick.box);
-        for (const core::Plane& plane : _volume.prepared->obliquePlanes) _polytope.clip(plane);
+        for (const core::Plane& plane : _volume.prepared->obliquePlanes) _polytope.clip(plane, CUT);
         // A little beyond, so that the cap on the near plane itself is not cut off by GL.
         const double nearest = interval.nearDepth + 1e-5 * std::abs(interval.nearDepth);
-        if (depths.nearDepth < nearest) _polytope.clip(depthPlane(_view.toEye, nearest));
+        if (depths.nearDepth < nearest) _polytope.clip(depthPlane(_view.toEye, nearest), CUT);
         if (depths.farDepth > interval.farDepth)
-            _polytope.clip(flipped(depthPlane(_view.toEye, interval.farDepth)));
+            _polytope.clip(flipped(depthPlane(_view.toEye, interval.farDepth)), CUT);
         if (_polytope.empty()) return;
 
         BrickBatch batch;
@@ -83,22 +80,28 @@ private:
         if (batch.indexCount > 0) _mesh->batches.push_back(batch);
     }
 
+    // Whether a face is seen from outside: the eye (w = 0: the direction to it) is in front of it.
+    bool facesEye(std::size_t face) const
+    {
+        const glm::dvec3 v = _polytope.vertices[_polytope.indices[_polytope.faceOffsets[face]]];
+        return glm::dot(_polytope.faceNormal(face), glm::dvec3(_eye) - v * _eye.w) > 0.0;
+    }
+
     void appendFaces(const DepthInterval& interval)
     {
         const double reference = _volume.look->referenceDepth;
         for (std::size_t f = 0; f < _polytope.faceCount(); ++f) {
-            if (!facesEye(_polytope.facePlane(f), _eye)) continue;
+            if (!facesEye(f)) continue;
             const auto first = static_cast<unsigned>(_mesh->vertices.size() / SLAB_STRIDE);
-            unsigned count = 0;
-            for (const std::uint32_t v : _polytope.face(f)) {
-                const glm::vec3 p(_polytope.vertex(v));
+            const std::uint32_t begin = _polytope.faceOffsets[f], end = _polytope.faceOffsets[f + 1];
+            for (std::uint32_t i = begin; i < end; ++i) {
+                const glm::vec3 p(_polytope.vertices[_polytope.indices[i]]);
                 _mesh->vertices.insert(_mesh->vertices.end(),
                                        {p.x, p.y, p.z,
                                         static_cast<float>(interval.nearDepth - reference),
                                         static_cast<float>(interval.farDepth - reference)});
-                ++count;
             }
-            for (unsigned i = 2; i < count; ++i)
+            for (unsigned i = 2; i < end - begin; ++i)
                 _mesh->indices.insert(_mesh->indices.end(), {first, first + i - 1, first + i});
             ++_mesh->faceCount;
         }

@@ -31,6 +31,30 @@ void appendFace(const core::PolygonizedFaces& slices, std::uint32_t face, Volume
     ++mesh.faceCount;
 }
 
+// Adds the faces of one surface in one brick to the last batch, or to a new one.
+void appendRange(const VolumeInstance& volume, const core::PolygonizedFaces& slices, int surface,
+                 int brick, bool newBatch, VolumeMesh& mesh)
+{
+    if (newBatch) {
+        BrickBatch batch;
+        if (!volume.bricks.empty()) {
+            const SelectedBrick& selected = volume.bricks[static_cast<std::size_t>(brick)];
+            batch.texture = selected.texture.texture;
+            batch.textureBytes = selected.texture.bytes;
+            batch.textureScale = selected.textureScale;
+            batch.textureOffset = selected.textureOffset;
+        }
+        batch.firstIndex = static_cast<unsigned>(mesh.indices.size());
+        if (mesh.batches.empty() || mesh.batches.back().indexCount > 0) mesh.batches.emplace_back();
+        mesh.batches.back() = batch;
+    }
+    const core::FaceRange& range = slices.range(surface, brick);
+    for (std::uint32_t f = 0; f < range.faceCount; ++f)
+        appendFace(slices, range.firstFace + f, mesh);
+    BrickBatch& batch = mesh.batches.back();
+    batch.indexCount = static_cast<unsigned>(mesh.indices.size()) - batch.firstIndex;
+}
+
 std::vector<core::Box3d> clipBoxesOf(const VolumeInstance& volume)
 {
     std::vector<core::Box3d> boxes;
@@ -69,22 +93,16 @@ Result<std::shared_ptr<const VolumeMesh>> sliceMesh(const VolumeInstance& volume
     if (format.colorSize) mesh->colorOffset = format.colorOffset();
     mesh->colorSize = format.colorSize;
     if (ownSpacing) mesh->spacingOffset = format.stride();
-    for (int b = 0; b < slices.brickCount; ++b) {
-        const SelectedBrick brick =
-            volume.bricks.empty() ? SelectedBrick{} : volume.bricks[static_cast<std::size_t>(b)];
-        BrickBatch batch;
-        batch.texture = brick.texture.texture;
-        batch.textureBytes = brick.texture.bytes;
-        batch.textureScale = brick.textureScale;
-        batch.textureOffset = brick.textureOffset;
-        batch.firstIndex = static_cast<unsigned>(mesh->indices.size());
-        for (int s = 0; s < slices.surfaceCount; ++s) {
-            const core::FaceRange& range = slices.range(s, b);
-            for (std::uint32_t f = 0; f < range.faceCount; ++f)
-                appendFace(slices, range.firstFace + f, *mesh);
+    // Bricks of one affine map have an order of their own, so that each is bound once; of a deformed
+    // volume only the surfaces have.
+    const bool brickByBrick = volume.prepared->voxelFrame || slices.brickCount == 1;
+    const int outer = brickByBrick ? slices.brickCount : slices.surfaceCount;
+    const int inner = brickByBrick ? slices.surfaceCount : slices.brickCount;
+    for (int i = 0; i < outer; ++i) {
+        for (int j = 0; j < inner; ++j) {
+            const int brick = brickByBrick ? i : j, surface = brickByBrick ? j : i;
+            appendRange(volume, slices, surface, brick, j == 0 || !brickByBrick, *mesh);
         }
-        batch.indexCount = static_cast<unsigned>(mesh->indices.size()) - batch.firstIndex;
-        if (batch.indexCount > 0) mesh->batches.push_back(batch);
     }
     if (!ownSpacing) mesh->vertices = std::move(slices.faces.vertices);
     return std::shared_ptr<const VolumeMesh>(std::move(mesh));
