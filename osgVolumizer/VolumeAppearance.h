@@ -6,7 +6,12 @@
 
 #include <osg/Group>
 
+#include <memory>
+
 namespace osgVolumizer {
+namespace render {
+class TableTextures;
+}
 
 /// What the volume geometry below is filled with: voxels, lookup table, sampling, shading.
 class OSGVOLUMIZER_EXPORT VolumeAppearance : public osg::Group
@@ -56,8 +61,11 @@ public:
     void resizeGLObjectBuffers(unsigned int maximum) override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
 
+    /// Textures of the lookup table; the renderer's.
+    render::TableTextures& tableTextures() const { return *_tableTextures; }
+
 protected:
-    ~VolumeAppearance() override = default;
+    ~VolumeAppearance() override;
 
 private:
     osg::ref_ptr<Voxels> _voxels;
@@ -66,6 +74,7 @@ private:
     Interpolation _interpolation = LINEAR;
     core::SamplingParameters _sampling;
     double _opacityUnit = 0.0;
+    std::unique_ptr<render::TableTextures> _tableTextures;
 };
 
 } // namespace osgVolumizer

@@ -10,6 +10,9 @@
 namespace osgVolumizer {
 
 class Voxels;
+namespace render {
+class GeometryCache;
+}
 
 /// The region of space that is filled: tetrahedra, in the object frame. It is drawn with the nearest
 /// VolumeAppearance above it; transforms may stand between the two. Without explicit voxel coordinates
@@ -20,7 +23,7 @@ class Voxels;
 class OSGVOLUMIZER_EXPORT VolumeGeometry : public osg::Drawable
 {
 public:
-    META_Node(osgVolumizer, VolumeGeometry)
+    META_Object(osgVolumizer, VolumeGeometry)
 
     /// How a box is cut into tetrahedra.
     enum BoxTessellation { FIVE, TWENTY_FOUR, ENCLOSING };
@@ -48,6 +51,9 @@ public:
     osg::BoundingSphere computeBound() const override;
     /// Draws nothing: volumes are drawn from per-view leaves, made in accept().
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
+
+    /// What frames reuse; the renderer's.
+    render::GeometryCache& geometryCache() const;
 
 protected:
     ~VolumeGeometry() override;

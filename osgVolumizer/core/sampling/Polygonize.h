@@ -3,62 +3,37 @@
 #include "../Export.h"
 #include "../Status.h"
 #include "../geometry/Box.h"
+#include "../geometry/FaceSet.h"
 #include "../geometry/TetraSet.h"
-
-#include <glm/mat4x4.hpp>
+#include "SamplingParameters.h"
+#include "View.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace osgVolumizer {
-
-/// Which family of surfaces samples a volume.
-enum class SamplingMode : int { VIEWPORT_ALIGNED, AXIS_ALIGNED, SPHERICAL };
-/// Over which extent the family is spread, and so where its first surface lies.
-enum class SamplingSpace : int { VIEW_VOLUME, OBJECT, PRIMITIVE };
-
 namespace core {
 
-/// A view of a tetra set: column-major matrices as in GLM. `toEye` maps the positions of the tetra
-/// set to the eye frame (looking down -z); depth is -z.
-struct View
-{
-    glm::dmat4 toEye{1.0};
-    glm::dmat4 projection{1.0};
-};
+class SurfaceFamily;
 
-struct SamplingParameters
-{
-    SamplingMode mode = SamplingMode::VIEWPORT_ALIGNED;
-    SamplingSpace space = SamplingSpace::OBJECT;
-    /// Distance between samples along the view, in voxels, per voxel axis; 0.5 meets Nyquist.
-    glm::dvec3 periodVoxel{1.0};
-    /// No more surfaces than this, ever; the period grows to keep within it.
-    int maximumSamples = 4096;
-};
-
-/// A run of faces, and the vertices and indices that they use.
+/// A run of faces, and the indices that they use.
 struct FaceRange
 {
     std::uint32_t firstFace = 0, faceCount = 0;
     std::uint32_t firstIndex = 0, indexCount = 0;
 };
 
-/// Convex polygons over shared vertex records (floats, ready for GL).
-struct FaceSet
-{
-    VertexFormat format;
-    std::vector<float> vertices;            ///< records of `format`
-    std::vector<std::uint32_t> indices;     ///< polygons, one after another
-    std::vector<std::uint32_t> faceOffsets; ///< face f is indices [faceOffsets[f], faceOffsets[f+1])
-};
-
 /// What polygonize() makes: faces per surface and brick, far to near.
 struct PolygonizedFaces
 {
+    /// Records in the tetra set's format; positions are relative to
+    /// SamplingParameters::outputOrigin. Faces run counter-clockwise about the direction from far
+    /// to near, in the position frame.
     FaceSet faces;
-    int surfaceCount = 0; ///< the number used, after bounding
-    int brickCount = 0;
+    int surfaceCount =
+        0;              ///< the number in use, after bounding; those that miss the set are left out
+    int brickCount = 0; ///< clip boxes; 1 without
     /// Range of surface s (0 = farthest) and brick b: ranges[s * brickCount + b].
     std::vector<FaceRange> ranges;
     /// Depth of each surface (eye units; distance from the eye when SPHERICAL; position along the
@@ -66,9 +41,68 @@ struct PolygonizedFaces
     std::vector<double> surfaceDepths;
     /// Distance between neighbouring surfaces, in the units of surfaceDepths.
     double spacing = 0.0;
+    /// PRIMITIVE only: per face, the thickness of its layer; elsewhere empty.
+    std::vector<float> faceSpacings;
     /// AXIS_ALIGNED: 0, 1 or 2; else -1.
     int axis = -1;
+
+    const FaceRange& range(int surface, int brick) const
+    {
+        return ranges[static_cast<std::size_t>(surface) * static_cast<std::size_t>(brickCount) +
+                      static_cast<std::size_t>(brick)];
+    }
 };
+
+/// Cuts a tetra set into faces, view after view. Keeps what does not depend on the view, and all
+/// its memory, so a view allocates nothing once the largest was seen. One thread at a time.
+///
+/// Watertight by construction: a face's points are made on edges, from the far end to the near end,
+/// so tetrahedra that share an edge get the same bits; points on clip boxes are made on the
+/// unclipped edges of the faces, so bricks that share them get the same bits (see RecordPolygon).
+/// A vertex on a surface belongs to its far side, and a face in the common plane of two clip boxes
+/// to the upper one.
+class OSGVOLUMIZER_CORE_EXPORT Polygonizer
+{
+public:
+    Polygonizer();
+    ~Polygonizer();
+    Polygonizer(Polygonizer&&) noexcept;
+    Polygonizer& operator=(Polygonizer&&) noexcept;
+
+    /// Validates and keeps the set, which must not change any more. On failure the old one stays.
+    Status setTetraSet(std::shared_ptr<const TetraSet> tetraSet);
+    const std::shared_ptr<const TetraSet>& tetraSet() const;
+    /// In the voxel frame: applied to the explicit voxel coordinates where the format has them,
+    /// else to the positions. None means one brick without clipping. On failure the old ones stay.
+    Status setClipBoxes(const std::vector<Box3d>& clipBoxes);
+
+    /// Expects a tetra set. `out` is unchanged on failure. VALUE_INVALID for parameters (see
+    /// SamplingParameters::validate), SINGULAR_MATRIX, TOO_LARGE for more than 2^26 pairs of
+    /// surface and brick or 2^32 vertices.
+    ///
+    /// OBJECT spreads the surfaces over the depths of the set, at the middles of equal layers, so
+    /// that the sum of face areas times the spacing is a midpoint rule for the volume. VIEW_VOLUME
+    /// spreads them over near to far (AXIS_ALIGNED: puts them at odd multiples of half the period),
+    /// so that neighbouring sets meet the same surfaces. PRIMITIVE spreads them over each
+    /// tetrahedron by itself; its faces are sorted into the layers of OBJECT. SPHERICAL in a
+    /// parallel projection means planes.
+    Status polygonize(const View& view, const SamplingParameters& parameters,
+                      PolygonizedFaces& out);
+    /// As OBJECT space, for a family of the caller's; mode, space, period and voxelSize are not
+    /// used.
+    Status polygonize(const SurfaceFamily& family, const SamplingParameters& parameters,
+                      PolygonizedFaces& out);
+
+private:
+    struct Private;
+    std::unique_ptr<Private> _private;
+};
+
+/// One call, nothing kept: see Polygonizer.
+OSGVOLUMIZER_CORE_EXPORT Status polygonize(const TetraSet& tetraSet,
+                                           const std::vector<Box3d>& clipBoxes, const View& view,
+                                           const SamplingParameters& parameters,
+                                           PolygonizedFaces& out);
 
 } // namespace core
 } // namespace osgVolumizer

@@ -1,0 +1,96 @@
+#include "VolumeAppearance.h"
+
+#include "Error.h"
+#include "render/ContextResources.h"
+#include "render/TableTextures.h"
+
+#include <cmath>
+
+namespace osgVolumizer {
+
+namespace {
+
+Status refuse(const VolumeAppearance& appearance, const char* field, double value, const char* expected)
+{
+    Status status(ErrorCode::VALUE_INVALID, "VolumeAppearance \"" + appearance.getName() + "\": " + field +
+                                                " is " + std::to_string(value) + ", expected " +
+                                                expected);
+    reportError(status);
+    return status;
+}
+
+} // namespace
+
+VolumeAppearance::VolumeAppearance()
+    : _lookupTable(new LookupTable), _tableTextures(new render::TableTextures)
+{
+}
+
+VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op)
+    : osg::Group(o, op), _voxels(o._voxels), _lookupTable(o._lookupTable), _technique(o._technique),
+      _interpolation(o._interpolation), _sampling(o._sampling), _opacityUnit(o._opacityUnit),
+      _tableTextures(new render::TableTextures)
+{
+}
+
+VolumeAppearance::~VolumeAppearance() = default;
+
+void VolumeAppearance::setVoxels(Voxels* voxels) { _voxels = voxels; }
+
+void VolumeAppearance::setLookupTable(LookupTable* table)
+{
+    _lookupTable = table ? table : new LookupTable;
+}
+
+Status VolumeAppearance::setSamplingPeriod(const osg::Vec3d& periodVoxel)
+{
+    for (int i = 0; i < 3; ++i) {
+        if (!(periodVoxel[i] > 0.0) || !std::isfinite(periodVoxel[i]))
+            return refuse(*this, "sampling period", periodVoxel[i], "a positive number of voxels");
+    }
+    _sampling.periodVoxel = {periodVoxel.x(), periodVoxel.y(), periodVoxel.z()};
+    return {};
+}
+
+osg::Vec3d VolumeAppearance::getSamplingPeriod() const
+{
+    return {_sampling.periodVoxel.x, _sampling.periodVoxel.y, _sampling.periodVoxel.z};
+}
+
+Status VolumeAppearance::setMaximumSamples(int count)
+{
+    if (count < 1) return refuse(*this, "maximum of samples", count, "at least 1");
+    _sampling.maximumSamples = count;
+    return {};
+}
+
+Status VolumeAppearance::setOpacityUnit(double objectUnits)
+{
+    if (!(objectUnits >= 0.0) || !std::isfinite(objectUnits))
+        return refuse(*this, "opacity unit", objectUnits, "0 (automatic) or a positive length");
+    _opacityUnit = objectUnits;
+    return {};
+}
+
+double VolumeAppearance::getEffectiveOpacityUnit() const
+{
+    if (_opacityUnit > 0.0) return _opacityUnit;
+    return _voxels ? _voxels->getMeanSpacing() : 1.0;
+}
+
+void VolumeAppearance::resizeGLObjectBuffers(unsigned int maximum)
+{
+    osg::Group::resizeGLObjectBuffers(maximum);
+    if (_voxels) _voxels->resizeGLObjectBuffers(maximum);
+    _tableTextures->resizeGLObjectBuffers(maximum);
+}
+
+void VolumeAppearance::releaseGLObjects(osg::State* state) const
+{
+    osg::Group::releaseGLObjects(state);
+    if (_voxels) _voxels->releaseGLObjects(state);
+    _tableTextures->releaseGLObjects(state);
+    render::releaseContextResources(state);
+}
+
+} // namespace osgVolumizer

@@ -1,0 +1,185 @@
+#include "VolumeGeometry.h"
+
+#include "Error.h"
+#include "Voxels.h"
+#include "render/Cull.h"
+#include "render/PreparedGeometry.h"
+
+#include <osgUtil/CullVisitor>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+namespace osgVolumizer {
+
+struct VolumeGeometry::Private
+{
+    mutable std::mutex mutex;
+    TetraSetPtr tetraSet = std::make_shared<const core::TetraSet>();
+    std::atomic<unsigned> modifiedCount{0};
+    render::GeometryCache cache;
+};
+
+namespace {
+
+// Bounds are floats in OSG: round outwards, so that a volume far from the origin is never culled.
+float roundDown(double v)
+{
+    const float f = static_cast<float>(v);
+    return f > v ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+float roundUp(double v)
+{
+    const float f = static_cast<float>(v);
+    return f < v ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+}
+
+core::TetraSet tetraSetOf(const std::vector<glm::dvec3>& points,
+                          std::vector<core::TetraSet::Index> indices)
+{
+    core::TetraSet set;
+    set.vertices.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) set.vertices.setPosition(i, points[i]);
+    set.indices = std::move(indices);
+    return set;
+}
+
+// The regular tetrahedron of edge directions around the box: a corner at box.min, legs three times as long.
+core::TetraSet enclosingTetrahedron(const core::Box3d& box)
+{
+    const glm::dvec3 legs = 3.0 * box.size();
+    return tetraSetOf({box.min, box.min + glm::dvec3(legs.x, 0, 0),
+                       box.min + glm::dvec3(0, legs.y, 0), box.min + glm::dvec3(0, 0, legs.z)},
+                      {0, 1, 2, 3});
+}
+
+// Four corner tetrahedra and the central one, on the corners numbered as in core::Box3d.
+core::TetraSet fiveTetrahedra(const core::Box3d& box)
+{
+    std::vector<glm::dvec3> corners;
+    for (int i = 0; i < 8; ++i) corners.push_back(box.corner(i));
+    return tetraSetOf(corners, {0, 1, 2, 4, 3, 2, 1, 7, 5, 4, 7, 1, 6, 7, 4, 2, 1, 2, 4, 7});
+}
+
+// Each face is cut into four triangles about its centre, each joined to the centre of the box.
+core::TetraSet twentyFourTetrahedra(const core::Box3d& box)
+{
+    static const core::TetraSet::Index faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                                      {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < 8; ++i) points.push_back(box.corner(i));
+    points.push_back(box.center());
+    std::vector<core::TetraSet::Index> indices;
+    for (const auto& face : faces) {
+        const auto middle = static_cast<core::TetraSet::Index>(points.size());
+        points.push_back(0.5 * (points[face[0]] + points[face[2]]));
+        for (int k = 0; k < 4; ++k) {
+            for (core::TetraSet::Index i : {face[k], face[(k + 1) % 4], middle, 8u})
+                indices.push_back(i);
+        }
+    }
+    return tetraSetOf(points, std::move(indices));
+}
+
+} // namespace
+
+VolumeGeometry::VolumeGeometry() : _private(new Private)
+{
+    setSupportsDisplayList(false);
+    setUseDisplayList(false);
+    setUseVertexBufferObjects(false);
+}
+
+VolumeGeometry::VolumeGeometry(const VolumeGeometry& o, const osg::CopyOp& op)
+    : osg::Drawable(o, op), _private(new Private)
+{
+    _private->tetraSet = o.getTetraSet();
+}
+
+VolumeGeometry::~VolumeGeometry() = default;
+
+osg::ref_ptr<VolumeGeometry> VolumeGeometry::createBox(const Voxels& voxels)
+{
+    const core::Box3d extent = voxels.getLayout().extent();
+    const osg::Vec3d spacing = voxels.getSpacing(), origin = voxels.getOrigin();
+    osg::BoundingBoxd box;
+    for (int i : {0, 7}) {
+        const glm::dvec3 c = extent.corner(i);
+        box.expandBy(origin + osg::Vec3d(c.x * spacing.x(), c.y * spacing.y(), c.z * spacing.z()));
+    }
+    return createBox(box);
+}
+
+osg::ref_ptr<VolumeGeometry> VolumeGeometry::createBox(const osg::BoundingBoxd& box,
+                                                       BoxTessellation tessellation)
+{
+    const core::Box3d b{{box.xMin(), box.yMin(), box.zMin()}, {box.xMax(), box.yMax(), box.zMax()}};
+    osg::ref_ptr<VolumeGeometry> geometry = new VolumeGeometry;
+    geometry->setTetraSet(tessellation == ENCLOSING     ? enclosingTetrahedron(b)
+                          : tessellation == TWENTY_FOUR ? twentyFourTetrahedra(b)
+                                                        : fiveTetrahedra(b));
+    return geometry;
+}
+
+Status VolumeGeometry::setTetraSet(core::TetraSet tetraSet)
+{
+    Status status = tetraSet.validate();
+    if (!status) {
+        status.text = "VolumeGeometry \"" + getName() + "\": " + status.text;
+        reportError(status);
+        return status;
+    }
+    auto shared = std::make_shared<const core::TetraSet>(std::move(tetraSet));
+    {
+        std::lock_guard<std::mutex> lock(_private->mutex);
+        _private->tetraSet = std::move(shared);
+    }
+    ++_private->modifiedCount;
+    dirtyBound();
+    return status;
+}
+
+VolumeGeometry::TetraSetPtr VolumeGeometry::getTetraSet() const
+{
+    std::lock_guard<std::mutex> lock(_private->mutex);
+    return _private->tetraSet;
+}
+
+unsigned VolumeGeometry::getModifiedCount() const { return _private->modifiedCount; }
+
+void VolumeGeometry::accept(osg::NodeVisitor& visitor)
+{
+    if (!visitor.validNodeMask(*this)) return;
+    visitor.pushOntoNodePath(this);
+    if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
+        render::cull(*this, *cullVisitor);
+    else
+        visitor.apply(static_cast<osg::Drawable&>(*this));
+    visitor.popFromNodePath();
+}
+
+osg::BoundingBox VolumeGeometry::computeBoundingBox() const
+{
+    const core::Box3d box = getTetraSet()->bounds();
+    if (box.empty()) return {};
+    return {roundDown(box.min.x), roundDown(box.min.y), roundDown(box.min.z),
+            roundUp(box.max.x),   roundUp(box.max.y),   roundUp(box.max.z)};
+}
+
+osg::BoundingSphere VolumeGeometry::computeBound() const
+{
+    const osg::BoundingBox box = getBoundingBox();
+    if (!box.valid()) return {};
+    const osg::Vec3 center = box.center();
+    // The centre is rounded to float as well: make room for it.
+    const float slack = 2.0f * std::numeric_limits<float>::epsilon() * center.length();
+    return {center, box.radius() * (1.0f + 1e-6f) + slack};
+}
+
+void VolumeGeometry::drawImplementation(osg::RenderInfo&) const {}
+
+render::GeometryCache& VolumeGeometry::geometryCache() const { return _private->cache; }
+
+} // namespace osgVolumizer

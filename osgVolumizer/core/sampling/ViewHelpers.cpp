@@ -1,0 +1,199 @@
+#include "ViewHelpers.h"
+
+#include "Polygonize.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgVolumizer {
+namespace core {
+
+namespace {
+
+constexpr double SINGULAR = 1e-12;
+
+Status singular(const char* what)
+{
+    return {ErrorCode::SINGULAR_MATRIX, std::string("View: the ") + what + " matrix is singular."};
+}
+
+glm::dvec4 row(const glm::dmat4& m, int r)
+{
+    return {m[0][r], m[1][r], m[2][r], m[3][r]};
+}
+
+/// Determinant over the product of the column lengths, in [0, 1]. Columns are normalised first, so
+/// that nothing overflows.
+double relativeVolume(const glm::dmat3& m)
+{
+    glm::dmat3 n;
+    for (int c = 0; c < 3; ++c) {
+        const double largest = std::max({std::abs(m[c].x), std::abs(m[c].y), std::abs(m[c].z)});
+        if (!(largest > 0.0) || !std::isfinite(largest)) return 0.0;
+        const glm::dvec3 scaled = m[c] / largest;
+        n[c] = scaled / glm::length(scaled);
+    }
+    return std::abs(glm::determinant(n));
+}
+
+/// The vector that is orthogonal to three vectors of four dimensions.
+glm::dvec4 cross4(const glm::dvec4& a, const glm::dvec4& b, const glm::dvec4& c)
+{
+    glm::dvec4 r;
+    for (int i = 0; i < 4; ++i) {
+        const int j = (i + 1) % 4, k = (i + 2) % 4, l = (i + 3) % 4;
+        const double minor =
+            glm::determinant(glm::dmat3(a[j], a[k], a[l], b[j], b[k], b[l], c[j], c[k], c[l]));
+        r[i] = i % 2 == 0 ? minor : -minor;
+    }
+    return r;
+}
+
+double largest(const glm::dvec4& v)
+{
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z), std::abs(v.w)});
+}
+
+} // namespace
+
+bool isSingular(const glm::dmat3& m)
+{
+    // The negated test also catches NaN.
+    return !(std::max(relativeVolume(m), relativeVolume(glm::transpose(m))) > SINGULAR);
+}
+
+Result<glm::dmat4> fromEye(const View& view)
+{
+    const glm::dmat3 linear(view.toEye);
+    const glm::dvec4& t = view.toEye[3];
+    if (isSingular(linear) || !(row(view.toEye, 3) == glm::dvec4(0.0, 0.0, 0.0, 1.0)) ||
+        !std::isfinite(t.x) || !std::isfinite(t.y) || !std::isfinite(t.z))
+        return singular("model-view");
+    const glm::dmat3 inverse = glm::inverse(linear);
+    glm::dmat4 r(inverse);
+    r[3] = glm::dvec4(-(inverse * glm::dvec3(t)), 1.0);
+    return r;
+}
+
+Result<glm::dvec4> eyePosition(const View& view)
+{
+    const Result<glm::dmat4> inverse = fromEye(view);
+    if (!inverse) return inverse.status;
+    // The centre of projection is the only point whose x, y and w all vanish.
+    glm::dvec4 rows[3] = {row(view.projection, 0), row(view.projection, 1),
+                          row(view.projection, 3)};
+    for (glm::dvec4& r : rows) {
+        const double size = largest(r);
+        if (!(size > 0.0) || !std::isfinite(size)) return singular("projection");
+        r /= size;
+    }
+    glm::dvec4 eye = cross4(rows[0], rows[1], rows[2]);
+    const double size = largest(eye);
+    if (!(size > SINGULAR)) return singular("projection");
+    eye /= size;
+    if (std::abs(eye.w) > SINGULAR) {
+        const glm::dvec4 p = *inverse * (eye / eye.w);
+        return glm::dvec4(glm::dvec3(p), 1.0);
+    }
+    if (eye.z < 0.0) eye = -eye;
+    const glm::dvec3 direction = glm::dmat3(*inverse) * glm::dvec3(eye);
+    return glm::dvec4(glm::normalize(direction), 0.0);
+}
+
+Result<glm::dvec3> viewDirection(const View& view)
+{
+    const Result<glm::dmat4> inverse = fromEye(view);
+    if (!inverse) return inverse.status;
+    return glm::normalize(-glm::dvec3((*inverse)[2]));
+}
+
+Result<glm::dvec3> viewDirectionAt(const View& view, const glm::dvec3& position)
+{
+    const Result<glm::dvec4> eye = eyePosition(view);
+    if (!eye) return eye.status;
+    if (eye->w == 0.0) return -glm::dvec3(*eye);
+    const glm::dvec3 ray = position - glm::dvec3(*eye);
+    const double length = glm::length(ray);
+    if (!(length > 0.0)) return viewDirection(view);
+    return ray / length;
+}
+
+Result<ViewAxis> closestAxis(const View& view, const glm::dvec3& position,
+                             const glm::dvec3& voxelSize)
+{
+    const Result<glm::dvec3> direction = viewDirectionAt(view, position);
+    if (!direction) return direction.status;
+    const glm::dvec3 voxels = *direction / voxelSize;
+    ViewAxis r;
+    r.axis = 0;
+    for (int i = 1; i < 3; ++i)
+        if (std::abs(voxels[i]) > std::abs(voxels[r.axis])) r.axis = i;
+    r.sign = voxels[r.axis] < 0.0 ? -1 : 1;
+    return r;
+}
+
+Result<NearFar> nearFar(const glm::dmat4& projection)
+{
+    // On the axis x = y = 0 of the eye frame: z-row +- w-row vanish at -near and -far.
+    const double zz = projection[2][2], zw = projection[3][2];
+    const double wz = projection[2][3], ww = projection[3][3];
+    const double nearSlope = zz + wz, farSlope = zz - wz;
+    const double scale = std::max(std::abs(zz), std::abs(wz));
+    if (!(scale > 0.0) || !std::isfinite(scale) || !std::isfinite(zw) || !std::isfinite(ww) ||
+        nearSlope == 0.0)
+        return singular("projection");
+    NearFar r;
+    r.nearDepth = (zw + ww) / nearSlope;
+    r.farDepth = farSlope == 0.0 ? std::numeric_limits<double>::infinity() : (zw - ww) / farSlope;
+    if (!(r.nearDepth < r.farDepth)) return singular("projection");
+    return r;
+}
+
+Result<double> projectedArea(const FaceSet& faces, const View& view)
+{
+    if (const Result<glm::dvec4> eye = eyePosition(view); !eye) return eye.status;
+    const glm::dmat4 toClip = view.projection * view.toEye;
+    const auto stride = static_cast<std::size_t>(faces.format.stride());
+    const auto offset = static_cast<std::size_t>(faces.format.positionOffset());
+    const double nearest = 1e-9; // of the largest w of the face: keeps the division finite
+    double area = 0.0;
+    std::vector<glm::dvec4> clip;
+    for (std::size_t f = 0; f + 1 < faces.faceOffsets.size(); ++f) {
+        clip.clear();
+        double limit = 0.0;
+        for (std::uint32_t i = faces.faceOffsets[f]; i < faces.faceOffsets[f + 1]; ++i) {
+            const float* p = faces.vertices.data() + faces.indices[i] * stride + offset;
+            clip.push_back(toClip * glm::dvec4(p[0], p[1], p[2], 1.0));
+            limit = std::max(limit, std::abs(clip.back().w));
+        }
+        limit *= nearest;
+        // Shoelace formula over the part with w >= limit.
+        glm::dvec2 first(0.0), previous(0.0);
+        bool started = false;
+        double twice = 0.0;
+        const auto add = [&](const glm::dvec4& v) {
+            const glm::dvec2 p = glm::dvec2(v) / v.w;
+            if (!started)
+                first = p;
+            else
+                twice += previous.x * p.y - previous.y * p.x;
+            previous = p;
+            started = true;
+        };
+        for (std::size_t i = 0; i < clip.size(); ++i) {
+            const glm::dvec4 a = clip[i], b = clip[(i + 1) % clip.size()];
+            const bool aIn = a.w >= limit, bIn = b.w >= limit;
+            if (aIn && limit > 0.0) add(a);
+            if (aIn != bIn) add(a + (b - a) * ((limit - a.w) / (b.w - a.w)));
+        }
+        if (started) twice += previous.x * first.y - previous.y * first.x;
+        area += 0.5 * std::abs(twice);
+    }
+    return area / 4.0; // normalised device coordinates span 2 x 2
+}
+
+} // namespace core
+} // namespace osgVolumizer

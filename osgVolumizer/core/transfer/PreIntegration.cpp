@@ -1,0 +1,267 @@
+#include "PreIntegration.h"
+
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgVolumizer {
+namespace core {
+
+namespace {
+
+constexpr double LEAST_TRANSPARENCY = 1.0 / 16777216.0; // as in extinctionFromOpacity()
+constexpr double HALF_STEP = 0.7071067811865476;        // root of a half
+
+/// Moments of -ln(1 + r t) over t in [-1, 1]: its mean, and the mean of t times it.
+struct LogMoments
+{
+    double zeroth, first;
+};
+
+LogMoments logMoments(double r)
+{
+    if (std::fabs(r) > 0.2) {
+        const double a = 1.0 + r, b = 1.0 - r, la = std::log(a), lb = std::log(b);
+        const auto part = [](double v, double l) {
+            return v * v * (0.5 * l - 0.25) - v * (l - 1.0);
+        };
+        return {1.0 - (a * la - b * lb) / (2.0 * r), -(part(a, la) - part(b, lb)) / (2.0 * r * r)};
+    }
+    // The closed form cancels near zero; this series has 16 digits after 12 terms.
+    LogMoments m{0.0, 0.0};
+    double power = r;
+    for (int k = 1; k < 24; k += 2, power *= r * r) {
+        m.first -= power / (k * (k + 2.0));
+        m.zeroth += power * r / ((k + 1.0) * (k + 2.0));
+    }
+    return m;
+}
+
+/// Mean of (extinction * rgb, extinction) over a piece on which colour and opacity are linear, and
+/// transparency stays above the least on both ends.
+glm::dvec4 meanOfSmoothPiece(const glm::dvec4& a, const glm::dvec4& b)
+{
+    const double ua = std::max(1.0 - a.a, LEAST_TRANSPARENCY);
+    const double ub = std::max(1.0 - b.a, LEAST_TRANSPARENCY);
+    const LogMoments m = logMoments((ub - ua) / (ub + ua));
+    const double extinction = m.zeroth - std::log(0.5 * (ua + ub));
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(a) + glm::dvec3(b));
+    const glm::dvec3 half = 0.5 * (glm::dvec3(b) - glm::dvec3(a));
+    return glm::dvec4(middle * extinction + half * m.first, extinction);
+}
+
+/// The same for any piece: where opacity is held below 1 the extinction is constant.
+glm::dvec4 meanOfPiece(const glm::dvec4& a, const glm::dvec4& b)
+{
+    const double ua = 1.0 - a.a, ub = 1.0 - b.a;
+    if ((ua < LEAST_TRANSPARENCY) == (ub < LEAST_TRANSPARENCY)) return meanOfSmoothPiece(a, b);
+    const double t = (LEAST_TRANSPARENCY - ua) / (ub - ua);
+    const glm::dvec4 split((1.0 - t) * a + t * b);
+    return t * meanOfSmoothPiece(a, split) + (1.0 - t) * meanOfSmoothPiece(split, b);
+}
+
+glm::dvec4 emission(const glm::dvec4& color)
+{
+    const double extinction = extinctionFromOpacity(color.a);
+    return {color.r * extinction, color.g * extinction, color.b * extinction, extinction};
+}
+
+double valueOf(int i, int count, double low, double high)
+{
+    const double t = static_cast<double>(i) / (count - 1);
+    return (1.0 - t) * low + t * high;
+}
+
+/// A piece of the value axis on which colour and opacity are linear.
+struct Piece
+{
+    double low, high;
+    double extinction; ///< mean
+    glm::dvec3 colorLow, colorHigh;
+    glm::dvec3 bulge; ///< mean colour, weighted by extinction, less the mean of the ends
+};
+
+/// Colour and opacity of a segment cut into pieces, front to back.
+class SegmentMarch
+{
+public:
+    explicit SegmentMarch(double lengthUnits) : _length(lengthUnits) {}
+    /// A piece of `fraction` of the length. The colour is taken as a parabola in optical depth,
+    /// which has the piece's ends and mean.
+    void add(double extinction, const glm::dvec3& front, const glm::dvec3& back,
+             const glm::dvec3& bulge, double fraction)
+    {
+        const double depth = extinction * fraction * _length;
+        const double opacity = -std::expm1(-depth);
+        // Moments of depth * exp(-depth x) over [0, 1]; series where the closed forms cancel.
+        double first = depth * (1.0 / 2.0 - depth * (1.0 / 3.0 - depth / 8.0));
+        double second = depth * (1.0 / 3.0 - depth * (1.0 / 4.0 - depth / 10.0));
+        if (depth > 1e-2) {
+            first = opacity / depth - (1.0 - opacity);
+            second = 2.0 * first / depth - (1.0 - opacity);
+        }
+        _color += std::exp(-_depth) *
+                  (opacity * front + first * (back - front) + 6.0 * (first - second) * bulge);
+        _depth += depth;
+    }
+    glm::vec4 result() const { return glm::vec4(glm::dvec4(_color, -std::expm1(-_depth))); }
+
+private:
+    double _length;
+    double _depth = 0.0;
+    glm::dvec3 _color{0.0};
+};
+
+/// Where pieces end: at the texels of a table, at the function's points, and wherever transparency
+/// or opacity has fallen by the root of two, so that the extinction of a piece varies little.
+std::vector<double> pieceEnds(const TransferFunction& function, int count, double low, double high)
+{
+    std::vector<double> ends;
+    for (int i = 0; i < count; ++i)
+        ends.push_back(valueOf(i, count, low, high));
+    const auto& points = function.points();
+    const auto add = [&](double v) {
+        if (v > low && v < high) ends.push_back(v);
+    };
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        add(points[i].value);
+        if (i == 0) continue;
+        const double ua = 1.0 - points[i - 1].color.a, ub = 1.0 - points[i].color.a;
+        const auto addTransparency = [&](double u) {
+            if ((u - ua) * (u - ub) < 0.0)
+                add(points[i - 1].value +
+                    (points[i].value - points[i - 1].value) * (u - ua) / (ub - ua));
+        };
+        for (double u = HALF_STEP; u >= LEAST_TRANSPARENCY; u *= HALF_STEP)
+            addTransparency(u);
+        for (double alpha = 0.25; alpha > 0.01; alpha *= HALF_STEP)
+            addTransparency(1.0 - alpha);
+    }
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    return ends;
+}
+
+std::vector<Piece> cutPieces(const TransferFunction& function, int count, double low, double high)
+{
+    const std::vector<double> ends = pieceEnds(function, count, low, high);
+    const TransferIntegral integral(function);
+    std::vector<Piece> pieces;
+    for (std::size_t i = 1; i < ends.size(); ++i) {
+        const glm::dvec4 mean = integral.mean(ends[i - 1], ends[i]);
+        Piece p{ends[i - 1], ends[i], mean.a, {}, {}, {}};
+        // A jump at the high end belongs to the next piece: its colour here is the limit from
+        // below.
+        const glm::dvec3 middle(function.evaluate(0.5 * (p.low + p.high)));
+        p.colorLow = glm::dvec3(function.evaluate(p.low));
+        p.colorHigh = 2.0 * middle - p.colorLow;
+        p.bulge = mean.a > 0.0 ? glm::dvec3(mean) / mean.a - middle : glm::dvec3(0.0);
+        pieces.push_back(p);
+    }
+    return pieces;
+}
+
+glm::vec4 segment(const TransferFunction& function, const std::vector<Piece>& pieces, double front,
+                  double back, double lengthUnits)
+{
+    SegmentMarch march(lengthUnits);
+    if (front == back) {
+        const glm::dvec4 c = function.evaluate(front);
+        march.add(extinctionFromOpacity(c.a), glm::dvec3(c), glm::dvec3(c), glm::dvec3(0.0), 1.0);
+        return march.result();
+    }
+    const auto first = std::lower_bound(pieces.begin(), pieces.end(), std::min(front, back),
+                                        [](const Piece& p, double v) { return p.low < v; });
+    const auto end = std::lower_bound(first, pieces.end(), std::max(front, back),
+                                      [](const Piece& p, double v) { return p.low < v; });
+    const double scale = 1.0 / std::fabs(back - front);
+    if (front < back)
+        for (auto p = first; p != end; ++p)
+            march.add(p->extinction, p->colorLow, p->colorHigh, p->bulge,
+                      (p->high - p->low) * scale);
+    else
+        for (auto p = end; p-- != first;)
+            march.add(p->extinction, p->colorHigh, p->colorLow, p->bulge,
+                      (p->high - p->low) * scale);
+    return march.result();
+}
+
+} // namespace
+
+TransferIntegral::TransferIntegral(const TransferFunction& function) : _function(function)
+{
+    const auto& points = _function.points();
+    _atPoint.resize(points.size(), glm::dvec4(0.0));
+    for (std::size_t i = 1; i < points.size(); ++i)
+        _atPoint[i] = _atPoint[i - 1] + (points[i].value - points[i - 1].value) *
+                                            meanOfPiece(points[i - 1].color, points[i].color);
+}
+
+glm::dvec4 TransferIntegral::integral(double value) const
+{
+    const auto& points = _function.points();
+    const auto after =
+        std::upper_bound(points.begin(), points.end(), value,
+                         [](double v, const TransferFunction::Point& p) { return v < p.value; });
+    if (after == points.begin()) return (value - after->value) * emission(after->color);
+    const auto& before = *(after - 1);
+    const glm::dvec4 start = _atPoint[static_cast<std::size_t>(after - points.begin()) - 1];
+    if (after == points.end()) return start + (value - before.value) * emission(before.color);
+    return start + (value - before.value) * meanOfPiece(before.color, _function.evaluate(value));
+}
+
+glm::dvec4 TransferIntegral::mean(double front, double back) const
+{
+    const auto& points = _function.points();
+    const double low = std::min(front, back), high = std::max(front, back);
+    if (!(low < high)) return emission(_function.evaluate(front));
+    const auto after =
+        std::upper_bound(points.begin(), points.end(), low,
+                         [](double v, const TransferFunction::Point& p) { return v < p.value; });
+    // Within one piece no difference of integrals is needed, and so nothing cancels.
+    if (after != points.end() && high <= after->value && after != points.begin())
+        if (high < after->value)
+            return meanOfPiece(_function.evaluate(low), _function.evaluate(high));
+    return (integral(high) - integral(low)) / (high - low);
+}
+
+PreIntegratedTable preIntegrate(const TransferFunction& function, int count, double low,
+                                double high)
+{
+    PreIntegratedTable table;
+    table.count = std::max(count, 2);
+    const std::size_t n = static_cast<std::size_t>(table.count);
+    table.texels.resize(n * n);
+    const TransferIntegral integral(function);
+    for (int back = 0; back < table.count; ++back)
+        for (int front = 0; front <= back; ++front) {
+            const glm::vec4 mean(integral.mean(valueOf(front, table.count, low, high),
+                                               valueOf(back, table.count, low, high)));
+            const std::size_t f = static_cast<std::size_t>(front),
+                              b = static_cast<std::size_t>(back);
+            table.texels[f + n * b] = mean;
+            table.texels[b + n * f] = mean;
+        }
+    return table;
+}
+
+PreIntegratedTable preIntegrateSegment(const TransferFunction& function, int count, double low,
+                                       double high, double lengthUnits)
+{
+    PreIntegratedTable table;
+    table.count = std::max(count, 2);
+    const std::size_t n = static_cast<std::size_t>(table.count);
+    table.texels.resize(n * n);
+
+    const std::vector<Piece> pieces = cutPieces(function, table.count, low, high);
+    for (int back = 0; back < table.count; ++back)
+        for (int front = 0; front < table.count; ++front)
+            table.texels[static_cast<std::size_t>(front) + n * static_cast<std::size_t>(back)] =
+                segment(function, pieces, valueOf(front, table.count, low, high),
+                        valueOf(back, table.count, low, high), lengthUnits);
+    return table;
+}
+
+} // namespace core
+} // namespace osgVolumizer

@@ -1,0 +1,105 @@
+#include "BrickLayout.h"
+
+#include <algorithm>
+
+namespace osgVolumizer {
+namespace core {
+
+namespace {
+
+/// Voxel coordinate that separates two bricks, the second of which starts at sample `start`. In the
+/// middle of the shared samples, so that a filter finds its support on both sides; on a sample
+/// where it can.
+double cutBefore(double start, int overlap)
+{
+    return overlap == 0 ? start - 0.5 : start + (overlap - 1) / 2;
+}
+
+std::int64_t bricksOnAxis(std::int64_t size, std::int64_t brick, int overlap, PartialBricks partial)
+{
+    if (brick >= size) return 1;
+    const std::int64_t step = brick - overlap;
+    const std::int64_t whole = (size - overlap) / step;
+    const bool rest = (size - overlap) % step != 0;
+    return rest && partial != PartialBricks::TRUNCATE ? whole + 1 : whole;
+}
+
+std::string text(const glm::ivec3& v)
+{
+    return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
+}
+
+} // namespace
+
+Result<BrickLayout> BrickLayout::create(const glm::ivec3& size, const glm::ivec3& brickSize,
+                                        int overlap, PartialBricks partial)
+{
+    if (overlap < 0)
+        return Status(ErrorCode::VALUE_INVALID,
+                      "brick overlap " + std::to_string(overlap) + " is negative");
+    if (partial != PartialBricks::SHRINK_TO_FIT && partial != PartialBricks::TRUNCATE &&
+        partial != PartialBricks::AVERAGE_UP)
+        return Status(ErrorCode::VALUE_INVALID, "partial brick rule " +
+                                                    std::to_string(static_cast<int>(partial)) +
+                                                    " is unknown");
+    BrickLayout layout;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (size[axis] < 1)
+            return Status(ErrorCode::VALUE_INVALID,
+                          "volume size " + text(size) + " is below 1 on an axis", axis);
+        if (brickSize[axis] <= overlap)
+            return Status(ErrorCode::VALUE_INVALID,
+                          "brick size " + text(brickSize) + " does not exceed the overlap " +
+                              std::to_string(overlap),
+                          axis);
+        layout._brickSize[axis] = std::min(brickSize[axis], size[axis]);
+        layout._count[axis] =
+            static_cast<int>(bricksOnAxis(size[axis], layout._brickSize[axis], overlap, partial));
+    }
+    layout._size = size;
+    layout._overlap = overlap;
+    layout._partial = partial;
+    constexpr std::int64_t maximum = std::int64_t(1) << 31;
+    const std::int64_t slice = std::int64_t(layout._count.x) * layout._count.y; // below 2^62
+    if (slice > maximum || slice * layout._count.z > maximum)
+        return Status(ErrorCode::TOO_LARGE, "volume size " + text(size) + " in bricks of " +
+                                                text(brickSize) + " makes more than 2^31 bricks");
+    return layout;
+}
+
+glm::ivec3 BrickLayout::coordinates(std::int64_t index) const
+{
+    return {static_cast<int>(index % _count.x), static_cast<int>(index / _count.x % _count.y),
+            static_cast<int>(index / _count.x / _count.y)};
+}
+
+BrickPlace BrickLayout::brick(std::int64_t index) const
+{
+    const glm::ivec3 c = coordinates(index);
+    BrickPlace place;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int step = _brickSize[axis] - _overlap;
+        const bool last = c[axis] + 1 == _count[axis];
+        const int regular = c[axis] * step;
+        const int end = std::min(regular + _brickSize[axis], _size[axis]);
+        const bool movedBack = _partial == PartialBricks::AVERAGE_UP && last;
+        place.samples.min[axis] = movedBack ? _size[axis] - _brickSize[axis] : regular;
+        place.samples.max[axis] = end;
+        place.clipBox.min[axis] = c[axis] == 0 ? 0.0 : cutBefore(regular, _overlap);
+        place.clipBox.max[axis] =
+            last ? end - 1.0 : cutBefore(static_cast<double>(regular) + step, _overlap);
+    }
+    return place;
+}
+
+Box3d BrickLayout::extent() const
+{
+    Box3d box;
+    if (brickCount() == 0) return box;
+    box.min = glm::dvec3(0.0);
+    box.max = brick(brickCount() - 1).clipBox.max;
+    return box;
+}
+
+} // namespace core
+} // namespace osgVolumizer

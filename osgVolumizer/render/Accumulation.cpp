@@ -1,0 +1,178 @@
+#include "Accumulation.h"
+
+#include "VolumeProgram.h"
+
+#include "../Error.h"
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+osg::ref_ptr<osg::Texture2D> makeTarget(int width, int height, GLenum internalFormat, GLenum format,
+                                        GLenum type)
+{
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
+    texture->setTextureSize(width, height);
+    texture->setInternalFormat(static_cast<GLint>(internalFormat));
+    texture->setSourceFormat(format);
+    texture->setSourceType(type);
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
+    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
+    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
+    texture->setResizeNonPowerOfTwoHint(false);
+    texture->setDataVariance(osg::Object::STATIC);
+    return texture;
+}
+
+osg::ref_ptr<osg::Texture2D> makeDepth(int width, int height, GLenum format)
+{
+    return makeTarget(width, height, format, GL_DEPTH_COMPONENT,
+                      format == GL_DEPTH_COMPONENT32F ? GL_FLOAT : GL_UNSIGNED_INT);
+}
+
+GLenum colorFormatOf(int bits)
+{
+    return bits <= 8 ? GL_RGBA8 : bits <= 16 ? GL_RGBA16F_ARB : GL_RGBA32F_ARB;
+}
+
+// Binds a texture for raw GL calls, and makes OSG bind its own again before the next leaf.
+void bindForCopy(osg::State& state, osg::Texture2D& texture)
+{
+    state.setActiveTextureUnit(UNIT_OPAQUE_DEPTH);
+    texture.apply(state);
+    state.dirtyTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
+}
+
+GLuint textureName(osg::State& state, osg::Texture2D& texture)
+{
+    bindForCopy(state, texture);
+    return texture.getTextureObject(state.getContextID())->id();
+}
+
+// As precise as the framebuffer's own depth, so that equal depths stay equal.
+GLenum depthFormatOfFramebuffer(osg::GLExtensions& gl, GLint framebuffer)
+{
+    GLint bits = 0;
+    gl.glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER_EXT,
+                                             framebuffer ? GL_DEPTH_ATTACHMENT_EXT : GL_DEPTH,
+                                             GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, &bits);
+    return bits > 24 ? GL_DEPTH_COMPONENT32F : GL_DEPTH_COMPONENT24;
+}
+
+void ensureDepth(AccumulationBuffers& buffers, int width, int height, GLenum depthFormat)
+{
+    if (buffers.opaqueDepth && buffers.width >= width && buffers.height >= height &&
+        buffers.depthFormat == depthFormat)
+        return;
+    buffers.width = std::max(width, buffers.width);
+    buffers.height = std::max(height, buffers.height);
+    buffers.depthFormat = depthFormat;
+    buffers.opaqueDepth = makeDepth(buffers.width, buffers.height, depthFormat);
+    buffers.color = nullptr;
+}
+
+void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorFormat)
+{
+    if (buffers.color && buffers.colorFormat == colorFormat) return;
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    buffers.colorFormat = colorFormat;
+    buffers.color = makeTarget(buffers.width, buffers.height, colorFormat, GL_RGBA, GL_FLOAT);
+    buffers.depth = makeDepth(buffers.width, buffers.height, buffers.depthFormat);
+    const GLuint color = textureName(state, *buffers.color);
+    const GLuint depth = textureName(state, *buffers.depth);
+    if (!buffers.framebuffer) gl.glGenFramebuffers(1, &buffers.framebuffer);
+    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.framebuffer);
+    gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D, color, 0);
+    gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth, 0);
+}
+
+} // namespace
+
+bool Accumulation::needsTarget(osg::GLExtensions& gl) const
+{
+    GLint bits = 0;
+    gl.glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER_EXT,
+                                             _drawFramebuffer ? GL_COLOR_ATTACHMENT0_EXT
+                                                              : GL_BACK_LEFT,
+                                             GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
+    return bits < _settings.bits;
+}
+
+void Accumulation::begin(osg::RenderInfo& renderInfo)
+{
+    osg::State& state = *renderInfo.getState();
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    AccumulationBuffers& buffers = contextResources(state)->accumulation;
+    const AccumulationSettings& s = _settings;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING_EXT, &_drawFramebuffer);
+    glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING_EXT, &_readFramebuffer);
+    glGetIntegerv(GL_SAMPLE_BUFFERS, &_sampleBuffers);
+
+    ensureDepth(buffers, s.x + s.width, s.y + s.height,
+                depthFormatOfFramebuffer(gl, _drawFramebuffer));
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
+    bindForCopy(state, *buffers.opaqueDepth);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, s.x, s.y, s.x, s.y, s.width, s.height);
+    if (needsTarget(gl)) {
+        ensureTarget(state, buffers, colorFormatOf(s.bits));
+        copyColor(state, buffers);
+        _redirected = true;
+    }
+    state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
+}
+
+void Accumulation::copyColor(osg::State& state, AccumulationBuffers& buffers)
+{
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const AccumulationSettings& s = _settings;
+    const GLuint source = static_cast<GLuint>(_drawFramebuffer);
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, source);
+    bindForCopy(state, *buffers.depth);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, s.x, s.y, s.x, s.y, s.width, s.height);
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, buffers.framebuffer);
+    gl.glBlitFramebuffer(s.x, s.y, s.x + s.width, s.y + s.height, s.x, s.y, s.x + s.width,
+                         s.y + s.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+void Accumulation::end(osg::RenderInfo& renderInfo)
+{
+    osg::State& state = *renderInfo.getState();
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    if (_redirected) writeBack(state, contextResources(state)->accumulation);
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_readFramebuffer));
+    state.dirtyTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
+}
+
+void Accumulation::writeBack(osg::State& state, AccumulationBuffers& buffers)
+{
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const AccumulationSettings& s = _settings;
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, buffers.framebuffer);
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
+    gl.glBlitFramebuffer(s.x, s.y, s.x + s.width, s.y + s.height, s.x, s.y, s.x + s.width,
+                         s.y + s.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step)
+    : _accumulation(accumulation), _step(step)
+{
+    setSupportsDisplayList(false);
+    setUseDisplayList(false);
+    setUseVertexBufferObjects(false);
+    setDataVariance(osg::Object::STATIC);
+}
+
+void AccumulationLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
+{
+    if (!_accumulation) return;
+    if (_step == BEGIN)
+        _accumulation->begin(renderInfo);
+    else
+        _accumulation->end(renderInfo);
+}
+
+} // namespace render
+} // namespace osgVolumizer

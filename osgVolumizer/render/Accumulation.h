@@ -1,0 +1,60 @@
+#pragma once
+
+#include "ContextResources.h"
+
+#include <osg/Drawable>
+
+namespace osgVolumizer {
+namespace render {
+
+/// What the leaves between begin and end draw into.
+struct AccumulationSettings
+{
+    /// Bits per colour channel, 8, 16 or 32, of the target; a framebuffer that has as many is used as it is.
+    int bits = 32;
+    /// Window rectangle that may be drawn to: x, y, width, height.
+    int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// One pass over a transparent bin's leaves. begin() takes a copy of the opaque scene's depth for
+/// segments to end at, and, where the framebuffer has fewer bits than asked for, redirects drawing to a float
+/// target that starts as a copy of the framebuffer, so that any blend function still finds the colours it
+/// expects. end() writes the result back. Both run in the draw thread, in one context.
+class Accumulation : public osg::Referenced
+{
+public:
+    explicit Accumulation(const AccumulationSettings& settings) : _settings(settings) {}
+
+    void begin(osg::RenderInfo& renderInfo);
+    void end(osg::RenderInfo& renderInfo);
+
+private:
+    bool needsTarget(osg::GLExtensions& gl) const;
+    void copyColor(osg::State& state, AccumulationBuffers& buffers);
+    void writeBack(osg::State& state, AccumulationBuffers& buffers);
+
+    AccumulationSettings _settings;
+    bool _redirected = false;
+    GLint _drawFramebuffer = 0, _readFramebuffer = 0, _sampleBuffers = 0;
+};
+
+/// The leaf that calls Accumulation::begin or end.
+class AccumulationLeaf : public osg::Drawable
+{
+public:
+    enum Step { BEGIN, END };
+
+    AccumulationLeaf(Accumulation* accumulation, Step step);
+    osg::Object* cloneType() const override { return new AccumulationLeaf(nullptr, BEGIN); }
+    osg::Object* clone(const osg::CopyOp&) const override { return cloneType(); }
+    const char* libraryName() const override { return "osgVolumizer"; }
+    const char* className() const override { return "AccumulationLeaf"; }
+    void drawImplementation(osg::RenderInfo& renderInfo) const override;
+
+private:
+    osg::ref_ptr<Accumulation> _accumulation;
+    Step _step;
+};
+
+} // namespace render
+} // namespace osgVolumizer

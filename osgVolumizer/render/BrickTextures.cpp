@@ -1,0 +1,164 @@
+#include "BrickTextures.h"
+
+#include "../core/voxels/VoxelData.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+// Keeps the samples alive for as long as an image refers to them.
+class BlockHolder : public osg::Referenced
+{
+public:
+    explicit BlockHolder(std::shared_ptr<const void> block) : _block(std::move(block)) {}
+
+private:
+    std::shared_ptr<const void> _block;
+};
+
+// How a voxel type goes to GL: signed integers are moved up to unsigned ones, and what has no filterable
+// texture becomes the fraction of the range as a float.
+struct TexelFormat
+{
+    VoxelType type;
+    GLenum internalFormat, dataType;
+    bool fraction; ///< texels are fractions of the voxels' range
+};
+
+TexelFormat texelFormat(VoxelType type, int components)
+{
+    const bool scalar = components == 1;
+    switch (type) {
+    case VoxelType::UINT8:
+    case VoxelType::INT8:
+        return {VoxelType::UINT8, GLenum(scalar ? GL_R8 : GL_RGBA8), GL_UNSIGNED_BYTE, false};
+    case VoxelType::UINT16:
+    case VoxelType::INT16:
+        return {VoxelType::UINT16, GLenum(scalar ? GL_R16 : GL_RGBA16), GL_UNSIGNED_SHORT, false};
+    case VoxelType::HALF:
+        return {VoxelType::HALF, GLenum(scalar ? GL_R16F : GL_RGBA16F_ARB), GL_HALF_FLOAT, false};
+    case VoxelType::FLOAT32:
+        return {VoxelType::FLOAT32, GLenum(scalar ? GL_R32F : GL_RGBA32F_ARB), GL_FLOAT, false};
+    default: return {VoxelType::FLOAT32, GLenum(scalar ? GL_R32F : GL_RGBA32F_ARB), GL_FLOAT, true};
+    }
+}
+
+// Smallest value of a signed type, which its texels are counted from.
+double signedOffset(VoxelType type)
+{
+    return type == VoxelType::INT8 ? -128.0 : type == VoxelType::INT16 ? -32768.0 : 0.0;
+}
+
+bool hasHoles(const float* values, std::size_t count)
+{
+    for (std::size_t i = 0; i < count; ++i)
+        if (!std::isfinite(values[i])) return true;
+    return false;
+}
+
+// The texels of a brick: the block itself where nothing has to change.
+VoxelBlock texelsOf(const Voxels& voxels, const VoxelBlock& block, const TexelFormat& format)
+{
+    const VoxelType type = voxels.getType();
+    const std::size_t count = block.bytes / voxelTypeSize(type);
+    const bool same = type == format.type && !format.fraction;
+    const bool floats = format.type == VoxelType::FLOAT32;
+    if (same && !(floats && hasHoles(reinterpret_cast<const float*>(block.data), count)))
+        return block;
+    const osg::Vec2d range = voxels.getRange();
+    const double scale = format.fraction ? 1.0 / (range.y() - range.x()) : 1.0;
+    const double offset = format.fraction ? -range.x() * scale : -signedOffset(type);
+    auto converted =
+        std::make_shared<std::vector<unsigned char>>(count * voxelTypeSize(format.type));
+    core::convertVoxels(block.data, type, converted->data(), format.type, count, scale, offset);
+    if (floats) {
+        // Holes show what the lowest value shows; a NaN would spread through the filter.
+        const float lowest = format.fraction ? 0.0f : static_cast<float>(range.x());
+        auto* values = reinterpret_cast<float*>(converted->data());
+        for (std::size_t i = 0; i < count; ++i)
+            if (!std::isfinite(values[i])) values[i] = lowest;
+    }
+    return {converted, converted->data(), converted->size()};
+}
+
+BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick, bool linear)
+{
+    VoxelBlock block = voxels.getBrick(brick);
+    if (!block.data) return {};
+    const TexelFormat format = texelFormat(voxels.getType(), voxels.getComponents());
+    block = texelsOf(voxels, block, format);
+    const glm::ivec3 size = voxels.getLayout().brick(brick).samples.size();
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->setImage(size.x, size.y, size.z, static_cast<GLint>(format.internalFormat),
+                    voxels.getComponents() == 1 ? GL_RED : GL_RGBA, format.dataType,
+                    const_cast<unsigned char*>(block.data), osg::Image::NO_DELETE, 1);
+    image->setUserData(new BlockHolder(block.owner));
+    osg::ref_ptr<osg::Texture3D> texture = new osg::Texture3D(image);
+    texture->setInternalFormat(static_cast<GLint>(format.internalFormat));
+    texture->setResizeNonPowerOfTwoHint(false);
+    texture->setUnRefImageDataAfterApply(false);
+    const auto filter = linear ? osg::Texture::LINEAR : osg::Texture::NEAREST;
+    texture->setFilter(osg::Texture::MIN_FILTER, filter);
+    texture->setFilter(osg::Texture::MAG_FILTER, filter);
+    for (auto axis : {osg::Texture::WRAP_S, osg::Texture::WRAP_T, osg::Texture::WRAP_R})
+        texture->setWrap(axis, osg::Texture::CLAMP_TO_EDGE);
+    texture->setDataVariance(osg::Object::STATIC);
+    return {texture, block.bytes};
+}
+
+} // namespace
+
+osg::ref_ptr<BrickTextures> BrickTextures::of(const Voxels& voxels)
+{
+    static std::mutex mutex;
+    std::lock_guard<std::mutex> lock(mutex);
+    osg::ref_ptr<BrickTextures> textures = dynamic_cast<BrickTextures*>(voxels.getRenderData());
+    if (!textures) {
+        textures = new BrickTextures;
+        voxels.setRenderData(textures);
+    }
+    return textures;
+}
+
+BrickTexture BrickTextures::get(const Voxels& voxels, std::int64_t brick, bool linear)
+{
+    const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
+    std::lock_guard<std::mutex> lock(_mutex);
+    Entry& entry = _entries[{brick, linear}];
+    if (!entry.brick.texture || entry.modifiedCount != modified || entry.layoutCount != layout)
+        entry = {makeTexture(voxels, brick, linear), modified, layout};
+    return entry.brick;
+}
+
+void BrickTextures::resizeGLObjectBuffers(unsigned int maximum)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (auto& entry : _entries)
+        if (entry.second.brick.texture) entry.second.brick.texture->resizeGLObjectBuffers(maximum);
+}
+
+void BrickTextures::releaseGLObjects(osg::State* state) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& entry : _entries)
+        if (entry.second.brick.texture) entry.second.brick.texture->releaseGLObjects(state);
+}
+
+glm::dvec2 texelToRangeFraction(const Voxels& voxels)
+{
+    const TexelFormat format = texelFormat(voxels.getType(), voxels.getComponents());
+    if (format.fraction) return {1.0, 0.0};
+    const osg::Vec2d range = voxels.getRange();
+    const double unit = format.type == VoxelType::UINT8    ? 255.0
+                        : format.type == VoxelType::UINT16 ? 65535.0
+                                                           : 1.0;
+    const double width = range.y() - range.x();
+    return {unit / width, (signedOffset(voxels.getType()) - range.x()) / width};
+}
+
+} // namespace render
+} // namespace osgVolumizer

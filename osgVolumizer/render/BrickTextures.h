@@ -1,0 +1,52 @@
+#pragma once
+
+#include "../Voxels.h"
+
+#include <osg/Texture3D>
+
+#include <glm/vec2.hpp>
+
+#include <map>
+#include <mutex>
+#include <utility>
+
+namespace osgVolumizer {
+namespace render {
+
+/// A brick as a texture; made when first asked for, uploaded by OSG when first drawn in a context.
+struct BrickTexture
+{
+    osg::ref_ptr<osg::Texture3D> texture;
+    std::size_t bytes = 0;
+};
+
+/// The textures of one Voxels, shared by all views and contexts, for as long as its data stays the same.
+/// Thread safe.
+class BrickTextures : public Voxels::RenderData
+{
+public:
+    /// The textures of these voxels, made on the first call.
+    static osg::ref_ptr<BrickTextures> of(const Voxels& voxels);
+
+    /// Null where the source fails. Reads the brick unless it is resident.
+    BrickTexture get(const Voxels& voxels, std::int64_t brick, bool linear);
+
+    void resizeGLObjectBuffers(unsigned int maximum) override;
+    void releaseGLObjects(osg::State* state) const override;
+
+private:
+    struct Entry
+    {
+        BrickTexture brick;
+        unsigned modifiedCount = 0, layoutCount = 0;
+    };
+
+    mutable std::mutex _mutex;
+    std::map<std::pair<std::int64_t, bool>, Entry> _entries;
+};
+
+/// Scale and offset from a texel, as the shader reads it, to the fraction of the voxels' range.
+glm::dvec2 texelToRangeFraction(const Voxels& voxels);
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <osg/GLExtensions>
+#include <osg/State>
+#include <osg/Texture2D>
+
+#include <memory>
+
+namespace osgVolumizer {
+namespace render {
+
+/// A GL buffer of one context that vertices or indices are streamed through.
+class StreamBuffer
+{
+public:
+    /// Binds the buffer to `target` and fills it.
+    void stream(osg::GLExtensions& gl, GLenum target, const void* data, std::size_t bytes);
+    void release(osg::GLExtensions& gl);
+
+private:
+    GLuint _name = 0;
+};
+
+/// The colour and depth that volumes are accumulated in, and a copy of the opaque scene's depth. One a
+/// context, grown to the largest viewport seen.
+struct AccumulationBuffers
+{
+    int width = 0, height = 0;
+    GLenum colorFormat = 0, depthFormat = 0;
+    GLuint framebuffer = 0;
+    osg::ref_ptr<osg::Texture2D> color, depth, opaqueDepth;
+};
+
+/// What the renderer keeps per context, made when first needed.
+struct ContextResources
+{
+    StreamBuffer vertices, indices;
+    AccumulationBuffers accumulation;
+};
+
+/// The resources of the current context; call only while it is current.
+std::shared_ptr<ContextResources> contextResources(osg::State& state);
+/// Follows osg::Object::releaseGLObjects: one context's resources, or all for null.
+void releaseContextResources(osg::State* state);
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,128 @@
+#include "PreparedGeometry.h"
+
+#include "../VolumeGeometry.h"
+#include "../Voxels.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+// The affine map position -> voxel coordinate that explicit voxel coordinates state, if it is one for the
+// whole set: taken from the largest tetrahedron and checked at every vertex.
+std::optional<glm::dmat4> globalVoxelMap(const core::TetraSet& set)
+{
+    const core::VertexArray& v = set.vertices;
+    double best = 0.0;
+    glm::dmat4 map(1.0);
+    for (std::size_t t = 0; t < set.tetraCount(); ++t) {
+        const auto* i = &set.indices[4 * t];
+        const glm::dvec3 p0 = v.position(i[0]), q0 = v.voxelCoordinate(i[0]);
+        const glm::dmat3 p(v.position(i[1]) - p0, v.position(i[2]) - p0, v.position(i[3]) - p0);
+        const glm::dmat3 q(v.voxelCoordinate(i[1]) - q0, v.voxelCoordinate(i[2]) - q0,
+                           v.voxelCoordinate(i[3]) - q0);
+        const double volume = std::abs(glm::determinant(p));
+        if (!(volume > best)) continue;
+        best = volume;
+        const glm::dmat3 linear = q * glm::inverse(p);
+        map = glm::dmat4(linear);
+        map[3] = glm::dvec4(q0 - linear * p0, 1.0);
+    }
+    if (!(best > 0.0) || !(std::abs(glm::determinant(glm::dmat3(map))) > 0.0)) return std::nullopt;
+    core::Box3d extent;
+    for (std::size_t k = 0; k < v.size(); ++k) extent.expand(v.voxelCoordinate(k));
+    const glm::dvec3 size = extent.size();
+    const double tolerance = 1e-9 * std::max({size.x, size.y, size.z, 1e-300});
+    for (std::size_t k = 0; k < v.size(); ++k) {
+        const glm::dvec3 d =
+            glm::dvec3(map * glm::dvec4(v.position(k), 1.0)) - v.voxelCoordinate(k);
+        if (!(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) <= tolerance))
+            return std::nullopt;
+    }
+    return map;
+}
+
+glm::dmat4 voxelsToObject(const Voxels& voxels)
+{
+    const osg::Vec3d o = voxels.getOrigin(), s = voxels.getSpacing();
+    return glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(o.x(), o.y(), o.z())),
+                      glm::dvec3(s.x(), s.y(), s.z()));
+}
+
+// The tetra set with positions mapped, and voxel coordinates dropped or kept.
+core::TetraSet mapped(const core::TetraSet& set, const glm::dmat4& map, bool keepVoxelCoordinates)
+{
+    const core::VertexFormat& from = set.vertices.format();
+    const core::VertexFormat format = core::VertexFormat::user(
+        keepVoxelCoordinates ? from.voxelCoordinateSize : 0, from.colorSize, from.userSize);
+    core::TetraSet result;
+    result.indices = set.indices;
+    result.vertices = core::VertexArray(format);
+    result.vertices.resize(set.vertices.size());
+    for (std::size_t i = 0; i < set.vertices.size(); ++i) {
+        const double* in = set.vertices.record(i);
+        double* out = result.vertices.record(i);
+        if (format.voxelCoordinateSize > 0) std::copy_n(in, 3, out);
+        std::copy_n(in + from.colorOffset(), from.colorSize, out + format.colorOffset());
+        std::copy_n(in + from.userOffset(), from.userSize, out + format.userOffset());
+        result.vertices.setPosition(
+            i, glm::dvec3(map * glm::dvec4(set.vertices.position(i), 1.0)));
+    }
+    return result;
+}
+
+std::shared_ptr<const PreparedGeometry> prepare(const core::TetraSet& set, const Voxels* voxels)
+{
+    auto result = std::make_shared<PreparedGeometry>();
+    const bool explicitCoordinates = set.vertices.format().voxelCoordinateSize == 3;
+    std::optional<glm::dmat4> objectToVoxel;
+    if (explicitCoordinates)
+        objectToVoxel = globalVoxelMap(set);
+    else if (voxels)
+        objectToVoxel = glm::inverse(voxelsToObject(*voxels));
+    result->voxelFrame = objectToVoxel.has_value();
+    if (objectToVoxel) {
+        result->frameToObject = glm::inverse(*objectToVoxel);
+        result->tetras = mapped(set, *objectToVoxel, false);
+    } else {
+        const glm::dvec3 center = set.bounds().center();
+        result->frameToObject = glm::translate(glm::dmat4(1.0), center);
+        result->tetras = mapped(set, glm::translate(glm::dmat4(1.0), -center), true);
+    }
+    result->bounds = result->tetras.bounds();
+    if (result->voxelFrame || !voxels) result->region = core::convexRegion(result->tetras);
+    return result;
+}
+
+} // namespace
+
+std::shared_ptr<const PreparedGeometry> GeometryCache::get(const VolumeGeometry& geometry,
+                                                           const Voxels* voxels)
+{
+    const unsigned geometryCount = geometry.getModifiedCount();
+    const unsigned layoutCount = voxels ? voxels->getLayoutCount() : 0;
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (auto i = _entries.begin(); i != _entries.end(); ++i) {
+        if (i->geometryCount != geometryCount || i->voxels != voxels ||
+            i->layoutCount != layoutCount)
+            continue;
+        _entries.splice(_entries.begin(), _entries, i);
+        return _entries.front().prepared;
+    }
+    const auto set = geometry.getTetraSet();
+    std::shared_ptr<const PreparedGeometry> prepared;
+    if (!set->empty()) prepared = prepare(*set, voxels);
+    _entries.push_front({geometryCount, voxels, layoutCount, prepared});
+    if (_entries.size() > CAPACITY) _entries.pop_back();
+    return prepared;
+}
+
+} // namespace render
+} // namespace osgVolumizer

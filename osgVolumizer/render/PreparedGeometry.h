@@ -1,0 +1,54 @@
+#pragma once
+
+#include "../core/geometry/ConvexRegion.h"
+#include "../core/geometry/TetraSet.h"
+
+#include <glm/mat4x4.hpp>
+
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+namespace osgVolumizer {
+class VolumeGeometry;
+class Voxels;
+
+namespace render {
+
+/// A tetra set in the frame that is sent to GL. Where voxel coordinates are one affine function of
+/// position (always, without explicit ones) that frame is the voxel frame; else it is the object frame
+/// moved to the centre of the bounds, and voxel coordinates stay a field of the vertices. Either way the
+/// numbers are small, so floats keep the precision that doubles in the object frame had.
+struct PreparedGeometry
+{
+    core::TetraSet tetras;
+    glm::dmat4 frameToObject{1.0};
+    bool voxelFrame = true;
+    core::Box3d bounds;                       ///< of the tetrahedra, in the frame
+    std::optional<core::ConvexRegion> region; ///< in the frame, where the tetrahedra are convex
+};
+
+/// Prepared geometries of one VolumeGeometry, by what they were made from. Thread safe.
+class GeometryCache
+{
+public:
+    std::shared_ptr<const PreparedGeometry> get(const VolumeGeometry& geometry, const Voxels* voxels);
+
+private:
+    struct Entry
+    {
+        unsigned geometryCount;
+        const Voxels* voxels;
+        unsigned layoutCount;
+        std::shared_ptr<const PreparedGeometry> prepared;
+    };
+    static constexpr std::size_t CAPACITY = 4;
+
+    std::mutex _mutex;
+    std::list<Entry> _entries; ///< most recent first
+};
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,215 @@
+#include "VolumeDrawable.h"
+
+#include "../Error.h"
+#include "ContextResources.h"
+#include "Matrices.h"
+#include "PixelRays.h"
+#include "Statistics.h"
+
+#include <osg/Program>
+
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/mat4x4.hpp>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+// Sets uniforms of the program that OSG applied last, without going through state sets.
+class Uniforms
+{
+public:
+    Uniforms(osg::GLExtensions& gl, const osg::Program::PerContextProgram& program)
+        : _gl(gl), _program(program)
+    {
+    }
+    void set(const char* name, float v) const { _gl.glUniform1f(location(name), v); }
+    void set(const char* name, int v) const { _gl.glUniform1i(location(name), v); }
+    void set(const char* name, const glm::vec2& v) const
+    {
+        _gl.glUniform2fv(location(name), 1, glm::value_ptr(v));
+    }
+    void set(const char* name, const glm::vec3& v) const
+    {
+        _gl.glUniform3fv(location(name), 1, glm::value_ptr(v));
+    }
+    void set(const char* name, const glm::dmat3& v) const
+    {
+        const glm::mat3 m(v);
+        _gl.glUniformMatrix3fv(location(name), 1, GL_FALSE, glm::value_ptr(m));
+    }
+    void set(const char* name, const glm::dmat4& v) const
+    {
+        const glm::mat4 m(v);
+        _gl.glUniformMatrix4fv(location(name), 1, GL_FALSE, glm::value_ptr(m));
+    }
+    void set(const char* name, const std::vector<glm::vec4>& v) const
+    {
+        if (!v.empty())
+            _gl.glUniform4fv(location(name), static_cast<GLsizei>(v.size()), glm::value_ptr(v[0]));
+    }
+
+private:
+    GLint location(const char* name) const
+    {
+        return _program.getUniformLocation(osg::Uniform::getNameID(name));
+    }
+
+    osg::GLExtensions& _gl;
+    const osg::Program::PerContextProgram& _program;
+};
+
+glm::dvec4 viewportOf(osg::State& state)
+{
+    if (const osg::Viewport* v = state.getCurrentViewport())
+        return {v->x(), v->y(), v->width(), v->height()};
+    GLint v[4];
+    glGetIntegerv(GL_VIEWPORT, v);
+    return {v[0], v[1], v[2], v[3]};
+}
+
+void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& rays)
+{
+    uniforms.set("windowCenter", glm::vec2(rays.windowCenter));
+    uniforms.set("rayOrigin", rays.origin);
+    uniforms.set("rayDirection", rays.direction);
+    uniforms.set("frameToUnits", look.frameToUnits);
+    uniforms.set("valueToTable", look.valueToTable);
+    if (look.features.slab) {
+        uniforms.set("stepDepth", static_cast<float>(look.step));
+        uniforms.set("maximumSteps", look.maximumSteps);
+        uniforms.set("planes", look.planes);
+    } else {
+        uniforms.set("spacing", static_cast<float>(look.step));
+        uniforms.set("surfaceNormal", glm::vec3(look.surfaceNormal));
+        if (look.features.spherical) uniforms.set("rayDirectionEye", rays.directionEye);
+    }
+}
+
+void setOpaqueDepth(osg::State& state, const Uniforms& uniforms, const PixelRays& rays,
+                    AccumulationBuffers& buffers)
+{
+    if (!buffers.opaqueDepth) return;
+    state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
+    uniforms.set("opaqueDepthScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
+                                               1.0f / static_cast<float>(buffers.height)));
+    uniforms.set("opaqueDepthOffset", glm::vec2(0.0f));
+    uniforms.set("clipZOrigin", glm::vec3(rays.clipZOrigin));
+    uniforms.set("clipZDirection", glm::vec3(rays.clipZDirection));
+    uniforms.set("clipWOrigin", glm::vec3(rays.clipWOrigin));
+    uniforms.set("clipWDirection", glm::vec3(rays.clipWDirection));
+}
+
+// Vertex attributes straight from our stream buffers, left disabled again for OSG.
+class BoundMesh
+{
+public:
+    BoundMesh(osg::State& state, osg::GLExtensions& gl, ContextResources& resources,
+              const VolumeMesh& mesh)
+        : _state(state), _gl(gl)
+    {
+        state.lazyDisablingOfVertexAttributes();
+        state.applyDisablingOfVertexAttributes();
+        resources.vertices.stream(gl, GL_ARRAY_BUFFER_ARB, mesh.vertices.data(),
+                                  mesh.vertices.size() * sizeof(float));
+        resources.indices.stream(gl, GL_ELEMENT_ARRAY_BUFFER_ARB, mesh.indices.data(),
+                                 mesh.indices.size() * sizeof(unsigned));
+        enable(ATTRIBUTE_POSITION, 3, mesh.positionOffset, mesh.stride);
+        if (mesh.slabOffset >= 0) enable(ATTRIBUTE_SLAB, 2, mesh.slabOffset, mesh.stride);
+        if (mesh.voxelCoordinateOffset >= 0)
+            enable(ATTRIBUTE_SLAB, 3, mesh.voxelCoordinateOffset, mesh.stride);
+        if (mesh.colorOffset >= 0)
+            enable(ATTRIBUTE_COLOR, mesh.colorSize, mesh.colorOffset, mesh.stride);
+    }
+    BoundMesh(const BoundMesh&) = delete;
+    BoundMesh& operator=(const BoundMesh&) = delete;
+    ~BoundMesh()
+    {
+        for (unsigned a = 0; a < 3; ++a)
+            if (_enabled[a]) _gl.glDisableVertexAttribArray(a);
+        _gl.glBindBuffer(GL_ARRAY_BUFFER_ARB, 0);
+        _gl.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER_ARB, 0);
+        _state.unbindVertexBufferObject();
+        _state.unbindElementBufferObject();
+    }
+
+private:
+    void enable(unsigned attribute, int size, int offset, int stride)
+    {
+        _gl.glEnableVertexAttribArray(attribute);
+        _gl.glVertexAttribPointer(attribute, size, GL_FLOAT, GL_FALSE,
+                                  static_cast<GLsizei>(stride * sizeof(float)),
+                                  reinterpret_cast<const void*>(offset * sizeof(float)));
+        _enabled[attribute] = true;
+    }
+
+    osg::State& _state;
+    osg::GLExtensions& _gl;
+    bool _enabled[3] = {false, false, false};
+};
+
+void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms, const BrickBatch& batch)
+{
+    osg::State& state = *renderInfo.getState();
+    if (batch.texture) {
+        if (!batch.texture->getTextureObject(state.getContextID())) {
+            count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
+                  "osgVolumizer bricks uploaded", 1.0);
+            count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
+                  "osgVolumizer bytes uploaded", static_cast<double>(batch.textureBytes));
+        }
+        state.applyTextureAttribute(UNIT_VOXELS, batch.texture.get());
+        uniforms.set("textureScale", batch.textureScale);
+        uniforms.set("textureOffset", batch.textureOffset);
+    }
+    uniforms.set("clipMin", batch.clipMin);
+    uniforms.set("clipMax", batch.clipMax);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.indexCount), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(std::size_t(batch.firstIndex) * sizeof(unsigned)));
+}
+
+} // namespace
+
+VolumeDrawable::VolumeDrawable()
+{
+    setSupportsDisplayList(false);
+    setUseDisplayList(false);
+    setUseVertexBufferObjects(false);
+    setDataVariance(osg::Object::STATIC);
+}
+
+void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
+{
+    osg::State& state = *renderInfo.getState();
+    const auto* program = state.getLastAppliedProgramObject();
+    if (!_mesh || !_look || _mesh->batches.empty() || !program) return;
+    const glm::dmat4 toEye = toGlm(state.getModelViewMatrix());
+    const glm::dmat4 projection = toGlm(state.getProjectionMatrix());
+    const Result<PixelRays> rays = pixelRays(toEye, projection, viewportOf(state),
+                                             _look->referenceDepth, _look->center);
+    if (!rays) {
+        reportError(rays.status);
+        return;
+    }
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    const Uniforms uniforms(gl, *program);
+    uniforms.set("frameToClip", projection * toEye);
+    setLook(uniforms, *_look, *rays);
+    if (_look->features.opaqueDepth)
+        setOpaqueDepth(state, uniforms, *rays, resources->accumulation);
+    if (_look->table) state.applyTextureAttribute(UNIT_TABLE, _look->table.get());
+    {
+        const BoundMesh bound(state, gl, *resources, *_mesh);
+        for (const BrickBatch& batch : _mesh->batches) drawBatch(renderInfo, uniforms, batch);
+    }
+    count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
+          static_cast<double>(_mesh->batches.size()));
+    // OSG compares attributes by address: make it bind its own again whatever ours were.
+    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH})
+        state.dirtyTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+}
+
+} // namespace render
+} // namespace osgVolumizer

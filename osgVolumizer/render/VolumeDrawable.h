@@ -1,0 +1,84 @@
+#pragma once
+
+#include "VolumeProgram.h"
+
+#include "../core/sampling/Polygonize.h"
+
+#include <osg/Drawable>
+#include <osg/Texture2D>
+#include <osg/Texture3D>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+/// What is drawn from one brick: a run of triangles, and the place of the brick.
+struct BrickBatch
+{
+    osg::ref_ptr<osg::Texture3D> texture; ///< null without voxels
+    std::size_t textureBytes = 0;
+    glm::vec3 clipMin{0.0f}, clipMax{0.0f};               ///< frame
+    glm::vec3 textureScale{1.0f}, textureOffset{0.0f}; ///< voxel -> texture coordinate
+    unsigned firstIndex = 0, indexCount = 0;
+};
+
+/// Triangles far to near, by brick. Immutable once made.
+struct VolumeMesh
+{
+    int stride = 3; ///< floats a vertex
+    int slabOffset = -1, voxelCoordinateOffset = -1, colorOffset = -1, colorSize = 0;
+    int positionOffset = 0;
+    std::vector<float> vertices;
+    std::vector<unsigned> indices;
+    std::vector<BrickBatch> batches;
+    unsigned faceCount = 0;
+};
+
+/// All that a volume's fragments are shaded with, besides brick and view.
+struct VolumeLook
+{
+    ProgramFeatures features;
+    osg::ref_ptr<osg::Texture2D> table;
+    glm::vec2 valueToTable{1.0f, 0.0f};
+    glm::dmat3 frameToUnits{1.0};     ///< frame vector -> opacity units
+    glm::dvec3 center{0.0};           ///< frame; the middle of the volume
+    double referenceDepth = 0.0;      ///< eye units; depths of slabs are counted from here
+    double step = 1.0;                ///< between samples or slices: depth, distance or frame units
+    glm::dvec3 surfaceNormal{0.0};    ///< slices: frame units; along which `step` is counted
+    int maximumSteps = 1;
+    std::vector<glm::vec4> planes; ///< the region's half-spaces (frame)
+};
+
+/// One leaf: a volume between two depths, drawn brick by brick, far to near. Made fresh for each view and
+/// frame, and never changed afterwards.
+class VolumeDrawable : public osg::Drawable
+{
+public:
+    VolumeDrawable();
+    osg::Object* cloneType() const override { return new VolumeDrawable; }
+    osg::Object* clone(const osg::CopyOp&) const override { return new VolumeDrawable; }
+    const char* libraryName() const override { return "osgVolumizer"; }
+    const char* className() const override { return "VolumeDrawable"; }
+
+    void set(std::shared_ptr<const VolumeMesh> mesh, std::shared_ptr<const VolumeLook> look)
+    {
+        _mesh = std::move(mesh);
+        _look = std::move(look);
+    }
+    const VolumeMesh* mesh() const { return _mesh.get(); }
+    void drawImplementation(osg::RenderInfo& renderInfo) const override;
+
+private:
+    std::shared_ptr<const VolumeMesh> _mesh;
+    std::shared_ptr<const VolumeLook> _look;
+};
+
+} // namespace render
+} // namespace osgVolumizer

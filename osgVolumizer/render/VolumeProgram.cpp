@@ -1,0 +1,85 @@
+#include "VolumeProgram.h"
+
+#include <osg/AlphaFunc>
+#include <osg/BlendFunc>
+#include <osg/CullFace>
+#include <osg/Depth>
+#include <osg/Program>
+
+#include <map>
+#include <mutex>
+
+namespace osgVolumizer {
+namespace render {
+
+std::string shaderSource(const std::string& name); // generated from shaders/*.glsl
+
+namespace {
+
+std::string header(const ProgramFeatures& features)
+{
+    std::string text = "#version 330\n";
+    const auto define = [&text](bool on, const char* name) {
+        if (on) text += std::string("#define ") + name + "\n";
+    };
+    define(features.voxelCoordinates, "VOXEL_COORDINATES");
+    define(features.vertexColors, "VERTEX_COLORS");
+    define(features.voxels, "VOXELS");
+    define(features.rgba, "RGBA");
+    define(features.opaqueDepth, "OPAQUE_DEPTH");
+    define(features.spherical, "SPHERICAL");
+    text += "#define PLANES " + std::to_string(features.planeCount) + "\n";
+    return text;
+}
+
+osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
+{
+    const std::string kind = features.slab ? "slab" : "slice";
+    osg::ref_ptr<osg::Program> result = new osg::Program;
+    result->setName("osgVolumizer " + kind);
+    result->addShader(new osg::Shader(osg::Shader::VERTEX,
+                                      header(features) + shaderSource(kind + ".vert.glsl")));
+    result->addShader(new osg::Shader(osg::Shader::FRAGMENT, header(features) +
+                                                                 shaderSource("transfer.glsl") +
+                                                                 shaderSource(kind + ".frag.glsl")));
+    return result;
+}
+
+osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
+{
+    using osg::StateAttribute;
+    osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+    set->setName("osgVolumizer");
+    set->setDataVariance(osg::Object::STATIC);
+    set->setAttributeAndModes(program(features), StateAttribute::ON | StateAttribute::PROTECTED);
+    set->setAttributeAndModes(new osg::BlendFunc(osg::BlendFunc::ONE,
+                                                 osg::BlendFunc::ONE_MINUS_SRC_ALPHA),
+                              StateAttribute::ON);
+    set->setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL, 0.0, 1.0, false),
+                              StateAttribute::ON);
+    // OSG's transparent bins drop fragments of alpha 0, which may still carry colour.
+    set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f),
+                              StateAttribute::OFF | StateAttribute::PROTECTED);
+    set->setMode(GL_CULL_FACE, StateAttribute::OFF | StateAttribute::PROTECTED);
+    set->addUniform(new osg::Uniform("voxels", int(UNIT_VOXELS)));
+    set->addUniform(new osg::Uniform("lookupTable", int(UNIT_TABLE)));
+    set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
+    set->setRenderBinDetails(10, "DepthSortedBin");
+    set->setNestRenderBins(false);
+    return set;
+}
+
+} // namespace
+
+osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
+{
+    static std::mutex mutex;
+    static std::map<unsigned, osg::ref_ptr<osg::StateSet>> sets;
+    std::lock_guard<std::mutex> lock(mutex);
+    osg::ref_ptr<osg::StateSet>& set = sets[features.key()];
+    if (!set) set = makeStateSet(features);
+    return set;
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <osg/StateSet>
+
+namespace osgVolumizer {
+namespace render {
+
+/// What a volume's shader has to do; nothing that is not asked for is compiled in.
+struct ProgramFeatures
+{
+    bool slab = true;             ///< march a segment per fragment, or shade one slice
+    bool voxelCoordinates = false; ///< as a vertex attribute; else the frame is the voxel frame
+    bool vertexColors = false;
+    bool voxels = true;  ///< a brick texture
+    bool rgba = false;   ///< voxels are colours, not values to look up
+    bool opaqueDepth = false;
+    bool spherical = false; ///< slices are spheres about the eye
+    int planeCount = 0;  ///< half-spaces that end the segment, besides the clip box
+
+    unsigned key() const
+    {
+        return unsigned(slab) | unsigned(voxelCoordinates) << 1 | unsigned(vertexColors) << 2 |
+               unsigned(voxels) << 3 | unsigned(rgba) << 4 | unsigned(opaqueDepth) << 5 |
+               unsigned(spherical) << 6 | unsigned(planeCount) << 8;
+    }
+};
+
+/// Texture units of the samplers.
+enum TextureUnit : unsigned { UNIT_VOXELS = 0, UNIT_TABLE = 1, UNIT_OPAQUE_DEPTH = 2 };
+/// Vertex attributes.
+enum Attribute : unsigned { ATTRIBUTE_POSITION = 0, ATTRIBUTE_SLAB = 1, ATTRIBUTE_COLOR = 2 };
+
+/// The state that a volume with these features is drawn with: program, blending, depth test without
+/// writes, transparent bin. Shared by all volumes, views and contexts. Thread safe.
+osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features);
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,10 @@
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec2 slabIn;
+flat out vec2 slab;
+uniform mat4 frameToClip;
+
+void main()
+{
+    slab = slabIn;
+    gl_Position = frameToClip * vec4(position, 1.0);
+}

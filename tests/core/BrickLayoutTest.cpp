@@ -1,0 +1,100 @@
+#include <osgVolumizer/core/voxels/BrickLayout.h>
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+using namespace osgVolumizer;
+using namespace osgVolumizer::core;
+
+TEST(BrickLayout, OneBrickHoldsASmallVolume)
+{
+    const Result<BrickLayout> layout = BrickLayout::create({10, 20, 1}, {64, 64, 64});
+    ASSERT_TRUE(layout.ok());
+    ASSERT_EQ(1, layout->brickCount());
+    const BrickPlace place = layout->brick(0);
+    EXPECT_EQ((Box3i{{0, 0, 0}, {10, 20, 1}}), place.samples);
+    EXPECT_EQ((Box3d{{0, 0, 0}, {9, 19, 0}}), place.clipBox);
+    EXPECT_EQ(place.clipBox, layout->extent());
+}
+
+TEST(BrickLayout, NeighboursShareOneSample)
+{
+    const Result<BrickLayout> layout = BrickLayout::create({9, 1, 1}, {5, 5, 5});
+    ASSERT_TRUE(layout.ok());
+    ASSERT_EQ(glm::ivec3(2, 1, 1), layout->count());
+    EXPECT_EQ((Box3i{{0, 0, 0}, {5, 1, 1}}), layout->brick(0).samples);
+    EXPECT_EQ((Box3i{{4, 0, 0}, {9, 1, 1}}), layout->brick(1).samples);
+    EXPECT_EQ(4.0, layout->brick(0).clipBox.max.x);
+    EXPECT_EQ(4.0, layout->brick(1).clipBox.min.x);
+}
+
+// Whatever the sizes: clip boxes tile the extent, every brick holds the samples that its filter
+// needs in its clip box, and bricks stay within their size and the volume.
+TEST(BrickLayout, ClipBoxesTileAndSamplesSuffice)
+{
+    std::mt19937 random(7);
+    const PartialBricks rules[] = {PartialBricks::SHRINK_TO_FIT, PartialBricks::TRUNCATE,
+                                   PartialBricks::AVERAGE_UP};
+    for (int trial = 0; trial < 3000; ++trial) {
+        const int overlap = static_cast<int>(random() % 6);
+        const int size = 1 + static_cast<int>(random() % 60);
+        const int brick = overlap + 1 + static_cast<int>(random() % 30);
+        const PartialBricks rule = rules[random() % 3];
+        const Result<BrickLayout> layout =
+            BrickLayout::create({1, size, 1}, glm::ivec3(brick), overlap, rule);
+        ASSERT_TRUE(layout.ok());
+        const std::int64_t count = layout->brickCount();
+        double end = 0.0;
+        for (std::int64_t i = 0; i < count; ++i) {
+            const BrickPlace place = layout->brick(i);
+            const int first = place.samples.min.y, last = place.samples.max.y - 1;
+            ASSERT_EQ(end, place.clipBox.min.y);
+            end = place.clipBox.max.y;
+            ASSERT_LE(place.clipBox.min.y, end);
+            ASSERT_GE(first, 0);
+            ASSERT_LT(last, size);
+            ASSERT_LE(place.samples.size().y, std::min(brick, size));
+            if (rule != PartialBricks::SHRINK_TO_FIT) {
+                ASSERT_EQ(std::min(brick, size), place.samples.size().y);
+            }
+            // A filter that reaches (overlap-1)/2 samples beyond the cell it is evaluated in.
+            if (overlap >= 1) {
+                const int reach = (overlap - 1) / 2;
+                if (i > 0) {
+                    ASSERT_LE(first, place.clipBox.min.y - reach);
+                }
+                if (i + 1 < count) {
+                    ASSERT_GE(last, end + reach);
+                }
+            }
+        }
+        ASSERT_EQ(end, layout->extent().max.y);
+        if (rule != PartialBricks::TRUNCATE) {
+            ASSERT_EQ(size - 1.0, end);
+        } else {
+            ASSERT_GT(end, size - 1.0 - brick);
+        }
+    }
+}
+
+TEST(BrickLayout, IndexAndCoordinatesAreInverse)
+{
+    const Result<BrickLayout> layout = BrickLayout::create({100, 70, 50}, {10, 10, 10});
+    ASSERT_TRUE(layout.ok());
+    for (std::int64_t i = 0; i < layout->brickCount(); ++i)
+        ASSERT_EQ(i, layout->index(layout->coordinates(i)));
+}
+
+TEST(BrickLayout, RefusesWhatHasNoMeaning)
+{
+    EXPECT_EQ(ErrorCode::VALUE_INVALID, BrickLayout::create({8, 0, 8}, {4, 4, 4}).status.code);
+    EXPECT_EQ(1, BrickLayout::create({8, 0, 8}, {4, 4, 4}).status.index);
+    EXPECT_EQ(ErrorCode::VALUE_INVALID, BrickLayout::create({8, 8, 8}, {4, 4, 1}).status.code);
+    EXPECT_EQ(ErrorCode::VALUE_INVALID, BrickLayout::create({8, 8, 8}, {4, 4, 4}, -1).status.code);
+    EXPECT_EQ(
+        ErrorCode::VALUE_INVALID,
+        BrickLayout::create({8, 8, 8}, {4, 4, 4}, 1, static_cast<PartialBricks>(9)).status.code);
+    const int huge = 2147483647;
+    EXPECT_EQ(ErrorCode::TOO_LARGE, BrickLayout::create({huge, huge, huge}, {2, 2, 2}).status.code);
+}

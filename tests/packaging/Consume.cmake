@@ -1,0 +1,36 @@
+# Configures, builds and runs the project in SOURCE against the installation in PREFIX. With
+# WITHOUT_OSG, no header and no library of OSG or GL may be in what was built.
+function(run)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${BINARY} RESULT_VARIABLE result
+                  OUTPUT_VARIABLE output ERROR_VARIABLE errors)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${ARGN}: ${result}\n${output}${errors}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+set(flags "")
+if(SANITIZE)
+  set(flags "-fsanitize=${SANITIZE}")
+endif()
+file(REMOVE_RECURSE ${BINARY})
+file(MAKE_DIRECTORY ${BINARY})
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${BINARY} -G Ninja -DCMAKE_PREFIX_PATH=${PREFIX}
+    -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${flags}" "-DREADME=${README}")
+run(${CMAKE_COMMAND} --build ${BINARY})
+run(${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH ${BINARY}/consumer)
+
+if(WITHOUT_OSG)
+  run(ninja -C ${BINARY} -t deps)
+  if(NOT output MATCHES "core/geometry/TetraSet.h")
+    message(FATAL_ERROR "The list of headers is not what it was thought to be:\n${output}")
+  endif()
+  if(output MATCHES "[^\n]*/(osg[A-Za-z]*|OpenThreads|GL|EGL)/[A-Z][A-Za-z]*(\\.h)?\n" AND
+     NOT CMAKE_MATCH_0 MATCHES "osgVolumizer/core")
+    message(FATAL_ERROR "core includes ${CMAKE_MATCH_0}")
+  endif()
+  run(ldd ${BINARY}/consumer)
+  if(output MATCHES "lib(osg[A-Z]?[a-uw-z]*|GL|EGL|OpenGL)\\.so[^\n]*")
+    message(FATAL_ERROR "core is linked with ${CMAKE_MATCH_0}")
+  endif()
+endif()

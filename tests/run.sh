@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Installs what is missing (Debian 12, root or sudo), builds, and runs all tests: optimised, then
+# under the address and undefined-behaviour sanitizers, then the fuzz targets for a few seconds each
+# where clang is there. Fails if anything fails, or if a test was skipped.
+set -u -o pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
+. .ci/packages.sh
+
+FUZZ_SECONDS=${FUZZ_SECONDS:-10}
+export CTEST_PARALLEL_LEVEL=${CTEST_PARALLEL_LEVEL:-2}
+jobs=$(nproc)
+failures=()
+
+# Mesa's software rasteriser gives the same pictures everywhere.
+export LIBGL_ALWAYS_SOFTWARE=1
+
+# run_suite PRESET: configures, builds and tests; a build that fails ends the script.
+run_suite() {
+    local preset=$1 log
+    cmake --preset "$preset" -DOSGVOLUMIZER_BUILD_TESTS=ON -DOSGVOLUMIZER_BUILD_EXAMPLES=ON \
+        -DOSGVOLUMIZER_BUILD_PLUGINS=ON -DOSGVOLUMIZER_WERROR=ON || exit 1
+    cmake --build --preset "$preset" -j "$jobs" || exit 1
+    mkdir -p build/logs
+    log=build/logs/ctest-$preset.log
+    ctest --preset "$preset" -j "$CTEST_PARALLEL_LEVEL" 2>&1 | tee "$log" || failures+=("$preset")
+    if grep -q '\*\*\*Skipped' "$log"; then
+        echo "Tests were skipped in the $preset build:"
+        grep '\*\*\*Skipped' "$log"
+        failures+=("$preset (skipped tests)")
+    fi
+}
+
+# Fuzz targets are programs named *Fuzz; each starts from its folder of examples, if there is one.
+run_fuzz() {
+    local target corpus
+    cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ \
+        -DOSGVOLUMIZER_BUILD_FUZZ=ON -DOSGVOLUMIZER_SANITIZE=fuzzer-no-link,address,undefined || exit 1
+    cmake --build build/fuzz -j "$jobs" --target fuzz || exit 1
+    for target in build/fuzz/bin/*Fuzz; do
+        corpus=build/fuzz/corpus/$(basename "$target")
+        mkdir -p "$corpus"
+        echo "$(basename "$target") for $FUZZ_SECONDS s"
+        "$target" -max_total_time="$FUZZ_SECONDS" -timeout=10 -rss_limit_mb=2048 -verbosity=0 \
+            -artifact_prefix="$corpus/" "$corpus" || failures+=("$(basename "$target")")
+    done
+}
+
+install_missing $BUILD_PACKAGES libgtest-dev libegl-dev libgl1-mesa-dri openscenegraph xvfb xauth \
+    clang-format-14 git || exit 1
+
+run_suite release
+run_suite asan-ubsan
+if echo 'extern "C" int LLVMFuzzerTestOneInput(const char*, unsigned long) { return 0; }' |
+    clang++ -x c++ -fsanitize=fuzzer,address - -o /dev/null 2>/dev/null; then
+    run_fuzz
+else
+    echo "No clang with libFuzzer: the fuzz targets were left out."
+fi
+
+# The closing lines of ctest once more, so that they are the last thing on the screen.
+echo
+for preset in asan-ubsan release; do
+    echo "$preset:"
+    grep -E '^[0-9]+% tests passed' "build/logs/ctest-$preset.log"
+done
+if [ ${#failures[@]} -gt 0 ]; then
+    echo "FAILED: ${failures[*]}"
+    exit 1
+fi
