@@ -1,8 +1,8 @@
 #include "Cull.h"
 
-#include "../Error.h"
 #include "Matrices.h"
 #include "Merger.h"
+#include "ReportOnce.h"
 #include "Statistics.h"
 #include "VolumeInstance.h"
 
@@ -81,6 +81,21 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, const TableTextu
     }
 }
 
+// What the overlap of the bricks allows; says so where it is not what was asked for.
+VolumeAppearance::Interpolation usedInterpolation(const VolumeAppearance& appearance)
+{
+    const Voxels* voxels = appearance.getVoxels();
+    const auto asked = appearance.getInterpolation();
+    if (!voxels || asked != VolumeAppearance::CUBIC) return asked;
+    if (voxels->getLayout().brickCount() <= 1 || voxels->getOverlap() >= 3) return asked;
+    reportOnce({ErrorCode::NOT_SUPPORTED,
+                "VolumeAppearance \"" + appearance.getName() +
+                    "\": cubic interpolation needs bricks that share 3 samples, but the voxels' "
+                    "overlap is " +
+                    std::to_string(voxels->getOverlap()) + "; interpolation is linear"});
+    return VolumeAppearance::LINEAR;
+}
+
 bool usesSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
 {
     return appearance.getTechnique() != VolumeAppearance::SLICES && prepared.region &&
@@ -107,6 +122,31 @@ double sampleDepth(const glm::dmat4& toEye, const core::Box3d& bounds,
     return std::max(1.0 / samplesPerDepth, (farthest - nearest) / sampling.maximumSamples);
 }
 
+// Runs of values need scalars that vary, and the ray in the voxel frame, which slices of a deformed volume
+// do not know.
+VolumeAppearance::Lookup lookupOf(const VolumeAppearance& appearance,
+                                  const PreparedGeometry& prepared)
+{
+    const bool runs = prepared.voxelFrame && appearance.getVoxels()->getComponents() == 1 &&
+                      appearance.getInterpolation() != VolumeAppearance::NEAREST;
+    return runs ? appearance.getLookup() : VolumeAppearance::AFTER_INTERPOLATION;
+}
+
+// How the shader gets a colour out of a brick.
+void setInterpolation(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                      const TableTexture& table, ProgramFeatures& features)
+{
+    if (!features.voxels) return;
+    const auto interpolation = usedInterpolation(appearance);
+    features.cubic = interpolation == VolumeAppearance::CUBIC;
+    features.exact =
+        interpolation == VolumeAppearance::LINEAR && appearance.getExactFiltering();
+    // Of nearest samples the two orders give the same.
+    features.before = appearance.getLookup() == VolumeAppearance::BEFORE_INTERPOLATION &&
+                      interpolation != VolumeAppearance::NEAREST;
+    features.preIntegrated = table.integrals;
+}
+
 std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table)
 {
     const VolumeAppearance& appearance = *volume.appearance;
@@ -121,7 +161,8 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     features.vertexColors = prepared.tetras.vertices.format().colorSize > 0;
     features.opaqueDepth = features.slab;
     features.spherical = !features.slab && volume.sampling.mode == SamplingMode::SPHERICAL;
-    look->table = table.texture;
+    look->table = table;
+    setInterpolation(appearance, prepared, table, features);
     if (voxels) {
         const glm::dvec2 fraction = texelToRangeFraction(*voxels), u = table.fractionToCoordinate;
         look->valueToTable = glm::vec2(fraction.x * u.x, fraction.y * u.x + u.y);
@@ -178,7 +219,8 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     TableTexture table;
     const osg::Camera* camera = visitor.getCurrentCamera();
     if (voxels) {
-        table = appearance->tableTextures().get(*appearance->getLookupTable(), voxels->getRange());
+        table = appearance->tableTextures().get(*appearance->getLookupTable(), voxels->getRange(),
+                                              lookupOf(*appearance, *volume->prepared));
         selectBricks(*volume, *voxels, table, visitor);
         count(camera, visitor.getFrameStamp(), "osgVolumizer bricks total",
               static_cast<double>(voxels->getLayout().brickCount()));

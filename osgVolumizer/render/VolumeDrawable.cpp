@@ -34,6 +34,10 @@ public:
     {
         _gl.glUniform3fv(location(name), 1, glm::value_ptr(v));
     }
+    void set(const char* name, const glm::vec4& v) const
+    {
+        _gl.glUniform4fv(location(name), 1, glm::value_ptr(v));
+    }
     void set(const char* name, const glm::dmat3& v) const
     {
         const glm::mat3 m(v);
@@ -69,6 +73,15 @@ glm::dvec4 viewportOf(osg::State& state)
     return {v[0], v[1], v[2], v[3]};
 }
 
+void setIntegrals(const Uniforms& uniforms, const TableTexture& table)
+{
+    const glm::dvec2 u = table.fractionToCoordinate;
+    uniforms.set("tableEnds", glm::vec2(u.y, u.x + u.y));
+    uniforms.set("tableTexel", 1.0f / static_cast<float>(table.count));
+    uniforms.set("tableLow", table.low);
+    uniforms.set("tableHigh", table.high);
+}
+
 void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& rays)
 {
     uniforms.set("windowCenter", glm::vec2(rays.windowCenter));
@@ -76,6 +89,7 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
     uniforms.set("rayDirection", rays.direction);
     uniforms.set("frameToUnits", look.frameToUnits);
     uniforms.set("valueToTable", look.valueToTable);
+    if (look.features.preIntegrated) setIntegrals(uniforms, look.table);
     if (look.features.slab) {
         uniforms.set("stepDepth", static_cast<float>(look.step));
         uniforms.set("maximumSteps", look.maximumSteps);
@@ -202,7 +216,8 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     setLook(uniforms, *_look, *rays);
     if (_look->features.opaqueDepth)
         setOpaqueDepth(state, uniforms, *rays, resources->accumulation);
-    if (_look->table) state.applyTextureAttribute(UNIT_TABLE, _look->table.get());
+    if (_look->table.texture)
+        state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
     {
         const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
         for (const BrickBatch& batch : _mesh->batches) drawBatch(renderInfo, uniforms, batch);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "TableTextures.h"
 #include "VolumeProgram.h"
 
 #include "../core/sampling/Polygonize.h"
@@ -46,7 +47,7 @@ struct VolumeMesh
 struct VolumeLook
 {
     ProgramFeatures features;
-    osg::ref_ptr<osg::Texture2D> table;
+    TableTexture table;
     glm::vec2 valueToTable{1.0f, 0.0f};
     glm::dmat3 frameToUnits{1.0};     ///< frame vector -> opacity units
     glm::dvec3 center{0.0};           ///< frame; the middle of the volume

@@ -2,6 +2,8 @@
 
 #include <osg/StateSet>
 
+#include <cstdint>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -15,13 +17,20 @@ struct ProgramFeatures
     bool rgba = false;   ///< voxels are colours, not values to look up
     bool opaqueDepth = false;
     bool spherical = false; ///< slices are spheres about the eye
-    int planeCount = 0;  ///< half-spaces that end the segment, besides the clip box
+    bool exact = false;     ///< interpolate from fetched samples, in full precision
+    bool cubic = false;
+    bool before = false;        ///< look samples up, then interpolate
+    bool preIntegrated = false; ///< look runs of values up
+    int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
 
-    unsigned key() const
+    /// Different for different features.
+    std::uint64_t key() const
     {
-        return unsigned(slab) | unsigned(voxelCoordinates) << 1 | unsigned(vertexColors) << 2 |
-               unsigned(voxels) << 3 | unsigned(rgba) << 4 | unsigned(opaqueDepth) << 5 |
-               unsigned(spherical) << 6 | unsigned(planeCount) << 8;
+        std::uint64_t result = static_cast<std::uint64_t>(planeCount);
+        for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth, spherical,
+                          exact, cubic, before, preIntegrated})
+            result = result << 1 | std::uint64_t(flag);
+        return result;
     }
 };
 

@@ -60,7 +60,16 @@ std::vector<double> cuts(const Path& path)
 
 Medium mediumOf(const Crossing& c, double depth)
 {
-    const double value = c.volume->field->value(c.fieldOrigin + depth * c.fieldDirection);
+    const glm::dvec3 place = c.fieldOrigin + depth * c.fieldDirection;
+    if (c.volume->medium[3]) {
+        const double scale = c.objectLength / c.volume->unit;
+        Medium m;
+        m.extinction = c.volume->medium[3]->value(place) * scale;
+        for (int i = 0; i < 3; ++i)
+            m.emission[i] = c.volume->medium[std::size_t(i)]->value(place) * scale;
+        return m;
+    }
+    const double value = c.volume->field->value(place);
     const glm::dvec4 color = c.volume->table.color(value);
     Medium m;
     m.extinction = Table::extinction(color.a) * c.objectLength / c.volume->unit;

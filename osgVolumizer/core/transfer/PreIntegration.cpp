@@ -226,6 +226,37 @@ glm::dvec4 TransferIntegral::mean(double front, double back) const
     return (integral(high) - integral(low)) / (high - low);
 }
 
+WindowError windowError(const TransferFunction& function, double low, double high, double width)
+{
+    WindowError worst;
+    if (!(low < high) || !(width > 0.0)) return worst;
+    const TransferIntegral integral(function);
+    const auto shown = [](const glm::dvec4& emitted) {
+        const double opacity = opacityFromExtinction(emitted.a, 1.0);
+        const double scale = emitted.a > 0.0 ? opacity / emitted.a : 0.0;
+        return glm::dvec4(scale * glm::dvec3(emitted), opacity);
+    };
+    const auto compare = [&](double value) {
+        const double a = std::max(value - 0.5 * width, low), b = std::min(value + 0.5 * width, high);
+        if (!(a < b)) return;
+        const glm::dvec4 d =
+            shown(integral.mean(a, b)) - shown(emission(function.evaluate(0.5 * (a + b))));
+        for (int c = 0; c < 4; ++c)
+            if (std::fabs(d[c]) > worst.error) worst = {std::fabs(d[c]), value};
+    };
+    const int count = static_cast<int>(std::min(std::ceil(8.0 * (high - low) / width), 65536.0));
+    for (int i = 0; i <= count; ++i)
+        compare(valueOf(i, count + 1, low, high));
+    // Points may lie much closer than a width; one for every eighth of it is enough.
+    double last = low - width;
+    for (const auto& p : function.points())
+        if (p.value >= low && p.value <= high && p.value - last > width / 8.0) {
+            compare(p.value);
+            last = p.value;
+        }
+    return worst;
+}
+
 PreIntegratedTable preIntegrate(const TransferFunction& function, int count, double low,
                                 double high)
 {

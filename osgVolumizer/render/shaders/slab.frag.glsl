@@ -48,6 +48,39 @@ void clipToPlane(vec4 plane, vec3 origin, vec3 direction, inout float tNear, ino
         tFar = tNear;
 }
 
+// Light of the segment [tNear, tFar], front to back: premultiplied colour, opacity.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
+{
+    float unitsPerDepth = length(frameToUnits * direction);
+    vec3 color = vec3(0.0);
+    float transmittance = 1.0;
+    float cell = floor(tNear / stepDepth) + 1.0;
+    float t = tNear;
+#ifdef PREINTEGRATED
+    float coordinate = tableCoordinate(origin + direction * t);
+    vec4 integral = tableIntegral(coordinate);
+#endif
+    for (int i = 0; i < maximumSteps && t < tFar; ++i) {
+        float end = min(cell * stepDepth, tFar);
+#ifdef PREINTEGRATED
+        float nextCoordinate = tableCoordinate(origin + direction * end);
+        vec4 nextIntegral = tableIntegral(nextCoordinate);
+        vec4 c = classifyRun(coordinate, integral, nextCoordinate, nextIntegral);
+        coordinate = nextCoordinate;
+        integral = nextIntegral;
+#else
+        vec4 c = classify(origin + direction * (0.5 * (t + end)));
+#endif
+        float through = exp2(-c.a * (end - t) * unitsPerDepth);
+        color += transmittance * (1.0 - through) * c.rgb;
+        transmittance *= through;
+        if (transmittance < OPAQUE_ENOUGH) break;
+        t = max(t, end);
+        cell += 1.0;
+    }
+    return vec4(color, 1.0 - transmittance);
+}
+
 void main()
 {
     vec3 origin, direction;
@@ -65,20 +98,5 @@ void main()
     tFar = min(tFar, opaqueEnd());
 #endif
 
-    float unitsPerDepth = length(frameToUnits * direction);
-    vec3 color = vec3(0.0);
-    float transmittance = 1.0;
-    float cell = floor(tNear / stepDepth) + 1.0;
-    float t = tNear;
-    for (int i = 0; i < maximumSteps && t < tFar; ++i) {
-        float end = min(cell * stepDepth, tFar);
-        vec4 c = classify(origin + direction * (0.5 * (t + end)));
-        float through = exp2(-c.a * (end - t) * unitsPerDepth);
-        color += transmittance * (1.0 - through) * c.rgb;
-        transmittance *= through;
-        if (transmittance < OPAQUE_ENOUGH) break;
-        t = max(t, end);
-        cell += 1.0;
-    }
-    fragColor = vec4(color, 1.0 - transmittance);
+    fragColor = march(origin, direction, tNear, tFar);
 }

@@ -22,7 +22,14 @@ void main()
     // A ray along the planes would see an infinitely thick layer: it sees no plane either.
     float layer = spacing / max(abs(dot(surfaceNormal, direction)), 1e-12);
 #endif
+#ifdef PREINTEGRATED
+    // The layer's own ends; one frame unit of the ray is `direction`.
+    vec3 half = 0.5 * layer * direction;
+    float x0 = tableCoordinate(voxelCoordinate - half), x1 = tableCoordinate(voxelCoordinate + half);
+    vec4 c = classifyRun(x0, tableIntegral(x0), x1, tableIntegral(x1));
+#else
     vec4 c = classify(voxelCoordinate);
+#endif
 #ifdef VERTEX_COLORS
 #ifdef VOXELS
     c *= vertexColor;
