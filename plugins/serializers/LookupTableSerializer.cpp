@@ -26,7 +26,7 @@ Status apply(Record& record, const osgDB::Options* options, LookupTable& table)
 {
     if (record.has("FileName")) return readFile(record, options, table);
     int domain = 0;
-    Status status = record.get("Domain", domainNames, 2, domain);
+    Status status = record.getChoice("Domain", domainNames, 2, domain);
     Field::Doubles values;
     if (status.ok()) status = record.take("Points", values);
     if (!status.ok()) return status;

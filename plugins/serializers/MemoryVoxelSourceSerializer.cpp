@@ -23,7 +23,7 @@ Status readDescription(const Record& record, VoxelSource::Description& d)
                        "field Size, value " + std::to_string(i) + " is " + std::to_string(n), i);
         d.size[i] = int(n);
     }
-    if (status.ok()) status = record.get("Components", 1, 4, d.components);
+    if (status.ok()) status = record.getInteger("Components", 1, 4, d.components);
     std::string name;
     if (status.ok()) status = record.get("Type", name);
     if (!status.ok()) return status;

@@ -54,7 +54,8 @@ Status Record::get(const std::string& name, std::size_t count, Field::Doubles& v
     return checkCount(name, count, values);
 }
 
-Status Record::get(const std::string& name, std::int64_t low, std::int64_t high, int& value) const
+Status Record::getInteger(const std::string& name, std::int64_t low, std::int64_t high,
+                          int& value) const
 {
     Field::Integers values;
     const Status status = get(name, 1, values);
@@ -76,7 +77,8 @@ Status Record::get(const std::string& name, std::string& text) const
     return Status();
 }
 
-Status Record::get(const std::string& name, const char* const* names, int count, int& index) const
+Status Record::getChoice(const std::string& name, const char* const* names, int count,
+                         int& index) const
 {
     std::string text;
     const Status status = get(name, text);

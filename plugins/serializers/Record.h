@@ -58,10 +58,12 @@ public:
     Status get(const std::string& name, std::size_t count, Field::Integers& values) const;
     Status get(const std::string& name, std::size_t count, Field::Doubles& values) const;
     /// One integer between low and high.
-    Status get(const std::string& name, std::int64_t low, std::int64_t high, int& value) const;
+    Status getInteger(const std::string& name, std::int64_t low, std::int64_t high,
+                      int& value) const;
     Status get(const std::string& name, std::string& text) const;
     /// One of `count` names; `index` is which. The error lists them.
-    Status get(const std::string& name, const char* const* names, int count, int& index) const;
+    Status getChoice(const std::string& name, const char* const* names, int count,
+                     int& index) const;
 
 private:
     Status wrongKind(const std::string& name) const;

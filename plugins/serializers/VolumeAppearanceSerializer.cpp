@@ -24,18 +24,18 @@ Status apply(const Record& record, VolumeAppearance& appearance)
         return status.ok();
     };
     int index = 0;
-    if (keep(record.get("Technique", techniqueNames, 3, index)))
+    if (keep(record.getChoice("Technique", techniqueNames, 3, index)))
         appearance.setTechnique(static_cast<VolumeAppearance::Technique>(index));
-    if (keep(record.get("Interpolation", interpolationNames, 2, index)))
+    if (keep(record.getChoice("Interpolation", interpolationNames, 2, index)))
         appearance.setInterpolation(static_cast<VolumeAppearance::Interpolation>(index));
-    if (keep(record.get("SamplingMode", modeNames, 3, index)))
+    if (keep(record.getChoice("SamplingMode", modeNames, 3, index)))
         appearance.setSamplingMode(static_cast<SamplingMode>(index));
-    if (keep(record.get("SamplingSpace", spaceNames, 3, index)))
+    if (keep(record.getChoice("SamplingSpace", spaceNames, 3, index)))
         appearance.setSamplingSpace(static_cast<SamplingSpace>(index));
     Field::Doubles values;
     if (keep(record.get("SamplingPeriod", 3, values)))
         keep(appearance.setSamplingPeriod(osg::Vec3d(values[0], values[1], values[2])));
-    if (keep(record.get("MaximumSamples", 1, 2147483647, index)))
+    if (keep(record.getInteger("MaximumSamples", 1, 2147483647, index)))
         keep(appearance.setMaximumSamples(index));
     if (keep(record.get("OpacityUnit", 1, values))) keep(appearance.setOpacityUnit(values[0]));
     return first;

@@ -15,7 +15,7 @@ const char* const layoutNames[] = {"V3F",         "T3F_V3F",     "C3F_V3F", "C4F
 Status readFormat(const Record& record, core::VertexFormat& format)
 {
     int layout = 0;
-    Status status = record.get("Layout", layoutNames, 7, layout);
+    Status status = record.getChoice("Layout", layoutNames, 7, layout);
     format = core::VertexFormat(static_cast<core::VertexLayout>(layout));
     if (!status.ok() || format.layout != core::VertexLayout::USER) return status;
     Field::Integers sizes;

@@ -69,7 +69,7 @@ Status apply(const Record& record, const osgDB::Options* options, Voxels& voxels
                             "field BrickSize, value " + std::to_string(i) + " is " +
                                 std::to_string(size[std::size_t(i)]),
                             i);
-    if (status.ok()) status = record.get("Overlap", 0, 1024, overlap);
+    if (status.ok()) status = record.getInteger("Overlap", 0, 1024, overlap);
     // The bricks that there are may be too small for the new overlap, or the new ones for the old.
     if (status.ok() && overlap < voxels.getOverlap()) status = voxels.setOverlap(overlap);
     if (status.ok())
