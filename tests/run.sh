@@ -45,7 +45,7 @@ run_fuzz() {
     done
 }
 
-install_missing $BUILD_PACKAGES libgtest-dev libegl-dev libgl1-mesa-dri openscenegraph xvfb xauth \
+install_missing $BUILD_PACKAGES libgtest-dev libgl1-mesa-dri openscenegraph xvfb xauth \
     clang-format-14 git || exit 1
 
 run_suite release
