@@ -160,6 +160,25 @@ TEST_F(ReadVoxels, ColoursAndAlpha)
     EXPECT_EQ((std::vector<std::uint8_t>{10, 12}), values<std::uint8_t>(**two));
 }
 
+// OpenImageIO's "null" format makes up images of any size; the file only has to be there.
+TEST_F(ReadVoxels, ImagesWithDepth)
+{
+    for (const char* name : {"a.null?RES=20x17x9&TYPE=uint8&PIXEL=1",
+                             "b.null?RES=20x17x9&TILE=8x8x4&TYPE=uint8&PIXEL=1"}) {
+        const auto voxels = readVoxels(writeBytes(name, "something"));
+        ASSERT_TRUE(voxels.ok()) << voxels.status.text;
+        EXPECT_EQ(glm::ivec3(20, 17, 9), (*voxels)->getSize());
+        EXPECT_EQ(std::vector<std::uint8_t>(20 * 17 * 9, 255), values<std::uint8_t>(**voxels));
+    }
+    const Status huge = statusOf(writeBytes("c.null?RES=16384x8192x8192&TYPE=uint8", "x"));
+    EXPECT_EQ(ErrorCode::FILE_UNREADABLE, huge.code);
+    EXPECT_TRUE(names(huge, "1 bytes") && names(huge, "need")) << huge.text;
+    const std::string large(2 << 20,
+                            'x'); // enough bytes for it to be compressed, so the bound counts
+    EXPECT_EQ(ErrorCode::TOO_LARGE,
+              statusOf(writeBytes("d.null?RES=16384x8192x8192&TYPE=uint8", large)).code);
+}
+
 TEST_F(ReadVoxels, FoldersInNaturalOrder)
 {
     for (const int i : {1, 2, 10})
