@@ -42,7 +42,7 @@ void bindForCopy(osg::State& state, osg::Texture2D& texture)
 {
     state.setActiveTextureUnit(UNIT_OPAQUE_DEPTH);
     texture.apply(state);
-    state.dirtyTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
+    state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
 GLuint textureName(osg::State& state, osg::Texture2D& texture)
@@ -51,13 +51,21 @@ GLuint textureName(osg::State& state, osg::Texture2D& texture)
     return texture.getTextureObject(state.getContextID())->id();
 }
 
-// As precise as the framebuffer's own depth, so that equal depths stay equal.
-GLenum depthFormatOfFramebuffer(osg::GLExtensions& gl, GLint framebuffer)
+// Bits of an attachment of the framebuffer that is drawn to; `window` names the same part of a window.
+GLint attachmentBits(const ContextResources& resources, GLint framebuffer, GLenum attachment,
+                     GLenum window, GLenum parameter)
 {
     GLint bits = 0;
-    gl.glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER_EXT,
-                                             framebuffer ? GL_DEPTH_ATTACHMENT_EXT : GL_DEPTH,
-                                             GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, &bits);
+    resources.glGetFramebufferAttachmentParameteriv(
+        GL_DRAW_FRAMEBUFFER_EXT, framebuffer ? attachment : window, parameter, &bits);
+    return bits;
+}
+
+// As precise as the framebuffer's own depth, so that equal depths stay equal.
+GLenum depthFormatOfFramebuffer(const ContextResources& resources, GLint framebuffer)
+{
+    const GLint bits = attachmentBits(resources, framebuffer, GL_DEPTH_ATTACHMENT_EXT, GL_DEPTH,
+                                      GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE);
     return bits > 24 ? GL_DEPTH_COMPONENT32F : GL_DEPTH_COMPONENT24;
 }
 
@@ -90,32 +98,29 @@ void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorF
 
 } // namespace
 
-bool Accumulation::needsTarget(osg::GLExtensions& gl) const
+bool Accumulation::needsTarget(const ContextResources& resources) const
 {
-    GLint bits = 0;
-    gl.glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER_EXT,
-                                             _drawFramebuffer ? GL_COLOR_ATTACHMENT0_EXT
-                                                              : GL_BACK_LEFT,
-                                             GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
-    return bits < _settings.bits;
+    return attachmentBits(resources, _drawFramebuffer, GL_COLOR_ATTACHMENT0_EXT, GL_BACK_LEFT,
+                          GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE) < _settings.bits;
 }
 
 void Accumulation::begin(osg::RenderInfo& renderInfo)
 {
     osg::State& state = *renderInfo.getState();
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    AccumulationBuffers& buffers = contextResources(state)->accumulation;
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    AccumulationBuffers& buffers = resources->accumulation;
     const AccumulationSettings& s = _settings;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING_EXT, &_drawFramebuffer);
     glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING_EXT, &_readFramebuffer);
     glGetIntegerv(GL_SAMPLE_BUFFERS, &_sampleBuffers);
 
     ensureDepth(buffers, s.x + s.width, s.y + s.height,
-                depthFormatOfFramebuffer(gl, _drawFramebuffer));
+                depthFormatOfFramebuffer(*resources, _drawFramebuffer));
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
     bindForCopy(state, *buffers.opaqueDepth);
     glCopyTexSubImage2D(GL_TEXTURE_2D, 0, s.x, s.y, s.x, s.y, s.width, s.height);
-    if (needsTarget(gl)) {
+    if (needsTarget(*resources)) {
         ensureTarget(state, buffers, colorFormatOf(s.bits));
         copyColor(state, buffers);
         _redirected = true;
@@ -143,7 +148,7 @@ void Accumulation::end(osg::RenderInfo& renderInfo)
     if (_redirected) writeBack(state, contextResources(state)->accumulation);
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_readFramebuffer));
-    state.dirtyTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
+    state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
 void Accumulation::writeBack(osg::State& state, AccumulationBuffers& buffers)

@@ -29,7 +29,7 @@ public:
     void end(osg::RenderInfo& renderInfo);
 
 private:
-    bool needsTarget(osg::GLExtensions& gl) const;
+    bool needsTarget(const ContextResources& resources) const;
     void copyColor(osg::State& state, AccumulationBuffers& buffers);
     void writeBack(osg::State& state, AccumulationBuffers& buffers);
 

@@ -34,6 +34,13 @@ void release(ContextResources& resources, unsigned contextId)
 
 } // namespace
 
+ContextResources::ContextResources()
+{
+    osg::setGLExtensionFuncPtr(glGetFramebufferAttachmentParameteriv,
+                               "glGetFramebufferAttachmentParameteriv",
+                               "glGetFramebufferAttachmentParameterivEXT");
+}
+
 void StreamBuffer::stream(osg::GLExtensions& gl, GLenum target, const void* data, std::size_t bytes)
 {
     if (!_name) gl.glGenBuffers(1, &_name);
@@ -51,7 +58,7 @@ std::shared_ptr<ContextResources> contextResources(osg::State& state)
 {
     std::lock_guard<std::mutex> lock(registryMutex());
     std::shared_ptr<ContextResources>& entry = registry()[state.getContextID()];
-    if (!entry) entry.reset(new ContextResources);
+    if (!entry) entry = std::make_shared<ContextResources>();
     return entry;
 }
 

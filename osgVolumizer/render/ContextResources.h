@@ -34,6 +34,10 @@ struct AccumulationBuffers
 /// What the renderer keeps per context, made when first needed.
 struct ContextResources
 {
+    ContextResources();
+
+    using GetAttachmentParameter = void(GL_APIENTRY*)(GLenum, GLenum, GLenum, GLint*);
+    GetAttachmentParameter glGetFramebufferAttachmentParameteriv = nullptr; ///< not one of OSG's
     StreamBuffer vertices, indices;
     AccumulationBuffers accumulation;
 };

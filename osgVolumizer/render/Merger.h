@@ -27,9 +27,6 @@ public:
 
     void add(std::unique_ptr<VolumeInstance> volume) { _volumes.push_back(std::move(volume)); }
 
-    Merger() = default;
-    Merger(const Merger& o, const osg::CopyOp& op) : osg::Object(o, op) {}
-    META_Object(osgVolumizer, Merger)
     void sortImplementation(osgUtil::RenderBin* bin) override;
 
 private:

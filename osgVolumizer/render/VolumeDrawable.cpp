@@ -211,7 +211,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
           static_cast<double>(_mesh->batches.size()));
     // OSG compares attributes by address: make it bind its own again whatever ours were.
     for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH})
-        state.dirtyTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+        state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }
 
 } // namespace render
