@@ -63,6 +63,13 @@ TEST_F(Merge, SlantedQuad)
     support::savePicture(expected, "merge_quad_oracle");
     const auto d = support::compare(picture, expected);
     std::cout << "rmse " << d.rmse << " max " << d.maximum << " at " << d.worstX << "," << d.worstY << " bias " << d.bias << "\n";
+    const auto mask = support::coveredPixels(oracle::awayFromSilhouettes(truth, camera));
+    const auto inner = support::compare(picture, expected, mask);
+    std::cout << "inner rmse " << inner.rmse << " max " << inner.maximum << " at " << inner.worstX << "," << inner.worstY << "\n";
+    FloatImage diff = picture; int n=0;
+    for (size_t i = 0; i < diff.pixels.size(); ++i) { diff.pixels[i] = glm::vec4(20.0f*glm::abs(glm::vec3(picture.pixels[i]-expected.pixels[i])),1); if (mask.set[i] && glm::length(glm::vec3(diff.pixels[i]))>20*2e-3) ++n; }
+    std::cout << "bad " << n << "\n";
+    support::savePicture(diff, "merge_quad_diff");
     EXPECT_LT(d.rmse, 4e-3);
 }
 
