@@ -56,7 +56,6 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, const TableTextu
     const core::BrickLayout& layout = voxels.getLayout();
     const osg::Vec2d range = voxels.getRange();
     const double toFraction = 1.0 / (range.y() - range.x());
-    const bool linear = volume.appearance->getInterpolation() != VolumeAppearance::NEAREST;
     const osg::ref_ptr<BrickTextures> textures = BrickTextures::of(voxels);
     const PreparedGeometry& prepared = *volume.prepared;
     for (std::int64_t i = 0; i < layout.brickCount(); ++i) {
@@ -73,7 +72,7 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, const TableTextu
                                                  (values.second - range.x()) * toFraction) > 0.0))
                 continue;
         }
-        const BrickTexture texture = textures->get(voxels, i, linear);
+        const BrickTexture texture = textures->get(voxels, i);
         if (!texture.texture) continue;
         const glm::vec3 size(place.samples.size());
         volume.bricks.push_back({i, box, texture, 1.0f / size,
@@ -138,6 +137,7 @@ void setInterpolation(const VolumeAppearance& appearance, const PreparedGeometry
 {
     if (!features.voxels) return;
     const auto interpolation = usedInterpolation(appearance);
+    features.nearest = interpolation == VolumeAppearance::NEAREST;
     features.cubic = interpolation == VolumeAppearance::CUBIC;
     features.exact =
         interpolation == VolumeAppearance::LINEAR && appearance.getExactFiltering();
@@ -145,6 +145,9 @@ void setInterpolation(const VolumeAppearance& appearance, const PreparedGeometry
     features.before = appearance.getLookup() == VolumeAppearance::BEFORE_INTERPOLATION &&
                       interpolation != VolumeAppearance::NEAREST;
     features.preIntegrated = table.integrals;
+    const glm::dvec3 period = appearance.getSamplingParameters().periodVoxel;
+    features.smoothTable =
+        !table.integrals && (appearance.getExactFiltering() || std::min({period.x, period.y, period.z}) < 1.0);
 }
 
 std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table)
@@ -164,8 +167,8 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     look->table = table;
     setInterpolation(appearance, prepared, table, features);
     if (voxels) {
-        const glm::dvec2 fraction = texelToRangeFraction(*voxels), u = table.fractionToCoordinate;
-        look->valueToTable = glm::vec2(fraction.x * u.x, fraction.y * u.x + u.y);
+        const glm::dvec2 fraction = texelToRangeFraction(*voxels);
+        look->valueToEntry = glm::vec2(fraction * (table.count - 1.0));
     }
     look->frameToUnits =
         glm::dmat3(prepared.frameToObject) / appearance.getEffectiveOpacityUnit();

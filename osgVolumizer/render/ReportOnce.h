@@ -8,7 +8,8 @@
 namespace osgVolumizer {
 namespace render {
 
-/// Reports what every frame would find again, each text once in the life of the process. Thread safe.
+/// Reports what every frame would find again, each text once in the life of the process. Thread
+/// safe.
 inline void reportOnce(const Status& status)
 {
     static std::mutex mutex;

@@ -1,12 +1,12 @@
 #include "TableTextures.h"
 
 #include "../core/transfer/PreIntegration.h"
-#include "../core/transfer/Resampling.h"
 
 #include <osg/Notify>
 
+#include <glm/vec3.hpp>
+
 #include <atomic>
-#include <cmath>
 #include <cstring>
 
 namespace osgVolumizer {
@@ -14,7 +14,14 @@ namespace render {
 
 namespace {
 
-// Whether midpoint sampling at a usual rate would be off by so much that pre-integration pays; says why.
+constexpr double BITS = 1.0 / 0.6931471805599453; // of extinction, in units of -ln(transmittance)
+
+// Few enough to stay in a cache, and to be made in a millisecond; so many that the nearest one
+// hardly differs.
+constexpr int ENTRIES = 16384;
+
+// Whether midpoint sampling at a usual rate would be off by so much that pre-integration pays; says
+// why.
 bool needsPreIntegration(const core::TransferFunction& function, const std::string& name)
 {
     // A 64th of the range is what the value commonly changes by from sample to sample.
@@ -22,43 +29,23 @@ bool needsPreIntegration(const core::TransferFunction& function, const std::stri
     const core::WindowError error = core::windowError(function, 0.0, 1.0, WINDOW);
     if (error.error <= TOLERANCE) return false;
     OSG_INFO << "osgVolumizer: lookup table \"" << name << "\" is pre-integrated: at "
-             << error.value << " of the range samples a " << 1.0 / WINDOW
-             << "th of it apart miss a mean over the values between by " << error.error << "."
+             << error.value << " of the range, samples a " << 1.0 / WINDOW
+             << "th of it apart miss the mean of what lies between by " << error.error << "."
              << std::endl;
     return true;
 }
 
-constexpr double BITS = 1.0 / 0.6931471805599453; // of extinction, in units of -ln(transmittance)
-constexpr int INTEGRAL_COUNT = 4096;
-
-osg::ref_ptr<osg::Texture2D> makeTexture(const std::vector<glm::vec4>& texels, int count)
+osg::ref_ptr<osg::TextureBuffer> makeTexture(const std::vector<glm::vec4>& texels)
 {
-    const int rows = static_cast<int>(texels.size()) / count;
     osg::ref_ptr<osg::Image> image = new osg::Image;
-    image->allocateImage(count, rows, 1, GL_RGBA, GL_FLOAT, 1);
+    image->allocateImage(static_cast<int>(texels.size()), 1, 1, GL_RGBA, GL_FLOAT, 1);
     std::memcpy(image->data(), texels.data(), texels.size() * sizeof(glm::vec4));
-    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
+    osg::ref_ptr<osg::TextureBuffer> texture = new osg::TextureBuffer;
+    texture->setImage(image);
     texture->setInternalFormat(GL_RGBA32F_ARB);
-    texture->setResizeNonPowerOfTwoHint(false);
-    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
-    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
-    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
-    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
+    texture->setUnRefImageDataAfterApply(false);
     texture->setDataVariance(osg::Object::STATIC);
     return texture;
-}
-
-// Appends the antiderivative at each texel, over the texture coordinate.
-void appendIntegrals(const core::TransferFunction& function, int count,
-                     std::vector<glm::vec4>& texels)
-{
-    const core::TransferIntegral integral(function);
-    glm::dvec4 sum(0.0);
-    texels.emplace_back(0.0f);
-    for (int i = 1; i < count; ++i) {
-        sum += integral.mean((i - 1.0) / (count - 1.0), i / (count - 1.0)) * (BITS / count);
-        texels.emplace_back(sum);
-    }
 }
 
 TableTexture makeTable(const LookupTable& table, const osg::Vec2d& range,
@@ -71,22 +58,21 @@ TableTexture makeTable(const LookupTable& table, const osg::Vec2d& range,
     result.integrals = lookup == VolumeAppearance::PREINTEGRATED ||
                        (lookup == VolumeAppearance::AUTOMATIC_LOOKUP &&
                         needsPreIntegration(*result.function, table.getName()));
-    const int count = result.integrals
-                          ? INTEGRAL_COUNT
-                          : core::chooseTexelCount(*result.function, 0.0, 1.0,
-                                                   core::TexelPlaces::ENDS)
-                                .count;
-    std::vector<glm::vec4> texels = result.function->tabulateExtinction(count, 0.0, 1.0, false);
-    for (glm::vec4& t : texels) t.a *= static_cast<float>(BITS);
-    const auto emission = [](const glm::vec4& t) {
-        return glm::vec4(glm::vec3(t) * t.a, t.a);
-    };
+    result.count = ENTRIES;
+    std::vector<glm::vec4> texels = result.function->tabulateExtinction(ENTRIES, 0.0, 1.0, false);
+    for (glm::vec4& t : texels)
+        t.a *= static_cast<float>(BITS);
+    const auto emission = [](const glm::vec4& t) { return glm::vec4(glm::vec3(t) * t.a, t.a); };
     result.low = emission(texels.front());
     result.high = emission(texels.back());
-    if (result.integrals) appendIntegrals(*result.function, count, texels);
-    result.count = count;
-    result.fractionToCoordinate = {(count - 1.0) / count, 0.5 / count};
-    result.texture = makeTexture(texels, count);
+    if (result.integrals) {
+        const core::TransferIntegral integral(*result.function);
+        for (const glm::dvec4& sum : integral.tabulate(result.count, 0.0, 1.0))
+            texels.emplace_back(sum * BITS);
+    } else {
+        texels.push_back(texels.back()); // for interpolation at the last
+    }
+    result.texture = makeTexture(texels);
     return result;
 }
 
@@ -114,13 +100,15 @@ TableTexture TableTextures::get(const LookupTable& table, const osg::Vec2d& rang
 void TableTextures::resizeGLObjectBuffers(unsigned int maximum)
 {
     std::lock_guard<std::mutex> lock(_mutex);
-    for (auto& entry : _entries) entry.texture.texture->resizeGLObjectBuffers(maximum);
+    for (auto& entry : _entries)
+        entry.texture.texture->resizeGLObjectBuffers(maximum);
 }
 
 void TableTextures::releaseGLObjects(osg::State* state) const
 {
     std::lock_guard<std::mutex> lock(_mutex);
-    for (const auto& entry : _entries) entry.texture.texture->releaseGLObjects(state);
+    for (const auto& entry : _entries)
+        entry.texture.texture->releaseGLObjects(state);
 }
 
 } // namespace render

@@ -1,6 +1,7 @@
 #include "VolumeDrawable.h"
 
 #include "../Error.h"
+#include "BrickTextures.h"
 #include "ContextResources.h"
 #include "Matrices.h"
 #include "PixelRays.h"
@@ -73,13 +74,13 @@ glm::dvec4 viewportOf(osg::State& state)
     return {v[0], v[1], v[2], v[3]};
 }
 
-void setIntegrals(const Uniforms& uniforms, const TableTexture& table)
+void setTable(const Uniforms& uniforms, const VolumeLook& look)
 {
-    const glm::dvec2 u = table.fractionToCoordinate;
-    uniforms.set("tableEnds", glm::vec2(u.y, u.x + u.y));
-    uniforms.set("tableTexel", 1.0f / static_cast<float>(table.count));
-    uniforms.set("tableLow", table.low);
-    uniforms.set("tableHigh", table.high);
+    uniforms.set("valueToEntry", look.valueToEntry);
+    uniforms.set("lastEntry", static_cast<float>(look.table.count - 1));
+    if (!look.features.preIntegrated) return;
+    uniforms.set("tableLow", look.table.low);
+    uniforms.set("tableHigh", look.table.high);
 }
 
 void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& rays)
@@ -88,11 +89,12 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
     uniforms.set("rayOrigin", rays.origin);
     uniforms.set("rayDirection", rays.direction);
     uniforms.set("frameToUnits", look.frameToUnits);
-    uniforms.set("valueToTable", look.valueToTable);
-    if (look.features.preIntegrated) setIntegrals(uniforms, look.table);
+    if (look.table.texture) setTable(uniforms, look);
     if (look.features.slab) {
         uniforms.set("stepDepth", static_cast<float>(look.step));
-        uniforms.set("maximumSteps", look.maximumSteps);
+        uniforms.set("maximumSteps", static_cast<float>(look.maximumSteps));
+        if (look.features.layerDepth)
+            uniforms.set("inFrontOfLayer", look.inFrontOfLayer ? 1 : 0);
         uniforms.set("planes", look.planes);
     } else {
         uniforms.set("surfaceNormal", glm::vec3(look.surfaceNormal));
@@ -100,14 +102,14 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
     }
 }
 
-void setOpaqueDepth(osg::State& state, const Uniforms& uniforms, const PixelRays& rays,
-                    AccumulationBuffers& buffers)
+void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRays& rays,
+                      const ProgramFeatures& features, const AccumulationBuffers& buffers)
 {
     if (!buffers.opaqueDepth) return;
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
-    uniforms.set("opaqueDepthScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
-                                               1.0f / static_cast<float>(buffers.height)));
-    uniforms.set("opaqueDepthOffset", glm::vec2(0.0f));
+    if (features.layerDepth) state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.layerDepth.get());
+    uniforms.set("depthTextureScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
+                                                1.0f / static_cast<float>(buffers.height)));
     uniforms.set("clipZOrigin", glm::vec3(rays.clipZOrigin));
     uniforms.set("clipZDirection", glm::vec3(rays.clipZDirection));
     uniforms.set("clipWOrigin", glm::vec3(rays.clipWOrigin));
@@ -175,6 +177,7 @@ void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms, const Bric
                   "osgVolumizer bricks uploaded", 1.0);
             count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
                   "osgVolumizer bytes uploaded", static_cast<double>(batch.textureBytes));
+            chooseFormat(state, *batch.texture);
         }
         state.applyTextureAttribute(UNIT_VOXELS, batch.texture.get());
         uniforms.set("textureScale", batch.textureScale);
@@ -215,7 +218,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     uniforms.set("frameToClip", projection * toEye);
     setLook(uniforms, *_look, *rays);
     if (_look->features.opaqueDepth)
-        setOpaqueDepth(state, uniforms, *rays, resources->accumulation);
+        setDepthTextures(state, uniforms, *rays, _look->features, resources->accumulation);
     if (_look->table.texture)
         state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
     {
@@ -225,7 +228,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
     // OSG compares attributes by address: make it bind its own again whatever ours were.
-    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH})
+    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH, UNIT_LAYER_DEPTH})
         state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }
 

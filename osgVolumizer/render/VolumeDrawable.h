@@ -48,12 +48,13 @@ struct VolumeLook
 {
     ProgramFeatures features;
     TableTexture table;
-    glm::vec2 valueToTable{1.0f, 0.0f};
+    glm::vec2 valueToEntry{1.0f, 0.0f}; ///< scale and offset: texel -> entry of the table
     glm::dmat3 frameToUnits{1.0};     ///< frame vector -> opacity units
     glm::dvec3 center{0.0};           ///< frame; the middle of the volume
     double referenceDepth = 0.0;      ///< eye units; depths of slabs are counted from here
     double step = 1.0;                ///< between samples or slices: depth, distance or frame units
     glm::dvec3 surfaceNormal{0.0};    ///< slices: frame units; along which `step` is counted
+    bool inFrontOfLayer = false;      ///< slabs: which part of a segment split by surfaces
     int maximumSteps = 1;
     std::vector<glm::vec4> planes; ///< the region's half-spaces (frame)
 };

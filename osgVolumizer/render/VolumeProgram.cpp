@@ -27,12 +27,15 @@ std::string header(const ProgramFeatures& features)
     define(features.voxels, "VOXELS");
     define(features.rgba, "RGBA");
     define(features.opaqueDepth, "OPAQUE_DEPTH");
+    define(features.layerDepth, "LAYER_DEPTH");
     define(features.spherical, "SPHERICAL");
     define(features.exact, "EXACT");
+    define(features.nearest, "NEAREST");
     define(features.cubic, "CUBIC");
     define(features.before, "BEFORE");
     define(features.preIntegrated, "PREINTEGRATED");
-    define(features.exact || features.cubic || features.before, "FETCH");
+    define(features.smoothTable, "SMOOTH_TABLE");
+    define(features.exact || features.nearest || features.cubic || features.before, "FETCH");
     text += "#define PLANES " + std::to_string(features.planeCount) + "\n";
     return text;
 }
@@ -71,6 +74,7 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->addUniform(new osg::Uniform("voxels", int(UNIT_VOXELS)));
     set->addUniform(new osg::Uniform("lookupTable", int(UNIT_TABLE)));
     set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
+    set->addUniform(new osg::Uniform("layerDepth", int(UNIT_LAYER_DEPTH)));
     set->setRenderBinDetails(10, "DepthSortedBin");
     set->setNestRenderBins(false);
     return set;

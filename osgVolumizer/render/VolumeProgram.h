@@ -16,26 +16,29 @@ struct ProgramFeatures
     bool voxels = true;  ///< a brick texture
     bool rgba = false;   ///< voxels are colours, not values to look up
     bool opaqueDepth = false;
+    bool layerDepth = false; ///< surfaces split the segment; expects opaqueDepth
     bool spherical = false; ///< slices are spheres about the eye
     bool exact = false;     ///< interpolate from fetched samples, in full precision
-    bool cubic = false;
+    bool nearest = false, cubic = false; ///< else linear
     bool before = false;        ///< look samples up, then interpolate
     bool preIntegrated = false; ///< look runs of values up
+    bool smoothTable = false;   ///< interpolate between entries
     int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
 
     /// Different for different features.
     std::uint64_t key() const
     {
         std::uint64_t result = static_cast<std::uint64_t>(planeCount);
-        for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth, spherical,
-                          exact, cubic, before, preIntegrated})
+        for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth, layerDepth,
+                          spherical, exact, nearest, cubic, before, preIntegrated,
+                          smoothTable})
             result = result << 1 | std::uint64_t(flag);
         return result;
     }
 };
 
 /// Texture units of the samplers.
-enum TextureUnit : unsigned { UNIT_VOXELS = 0, UNIT_TABLE = 1, UNIT_OPAQUE_DEPTH = 2 };
+enum TextureUnit : unsigned { UNIT_VOXELS = 0, UNIT_TABLE = 1, UNIT_OPAQUE_DEPTH = 2, UNIT_LAYER_DEPTH = 3 };
 /// Vertex attributes.
 enum Attribute : unsigned {
     ATTRIBUTE_POSITION,

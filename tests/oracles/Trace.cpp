@@ -64,9 +64,10 @@ Medium mediumOf(const Crossing& c, double depth)
     if (c.volume->medium[3]) {
         const double scale = c.objectLength / c.volume->unit;
         Medium m;
-        m.extinction = c.volume->medium[3]->value(place) * scale;
-        for (int i = 0; i < 3; ++i)
-            m.emission[i] = c.volume->medium[std::size_t(i)]->value(place) * scale;
+        // Interpolants may overshoot; below nothing there is nothing.
+        m.extinction = std::max(0.0, c.volume->medium[3]->value(place)) * scale;
+        for (int i = 0; i < 3 && m.extinction > 0.0; ++i)
+            m.emission[i] = std::max(0.0, c.volume->medium[std::size_t(i)]->value(place)) * scale;
         return m;
     }
     const double value = c.volume->field->value(place);

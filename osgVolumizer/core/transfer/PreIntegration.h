@@ -20,6 +20,11 @@ public:
     /// in alpha, extinction times colour in rgb. For front == back, the values there.
     glm::dvec4 mean(double front, double back) const;
 
+    /// Integrals from the first to each of `count` values at low + i/(count-1)*(high-low), counted
+    /// in steps between them: a difference of two over the difference of their indices is mean().
+    /// count >= 2, low < high. Cost O(count + points).
+    std::vector<glm::dvec4> tabulate(int count, double low, double high) const;
+
 private:
     /// Antiderivative, zero at the first point.
     glm::dvec4 integral(double value) const;

@@ -45,8 +45,7 @@ private:
     glm::dvec4 texel(int i) const
     {
         if (!_texels.empty()) return glm::dvec4(_texels[static_cast<std::size_t>(i)]);
-        const double t =
-            _places == TexelPlaces::CENTERS ? (i + 0.5) / _count : i / (_count - 1.0);
+        const double t = _places == TexelPlaces::CENTERS ? (i + 0.5) / _count : i / (_count - 1.0);
         glm::dvec4 color = _function.evaluate((1.0 - t) * _low + t * _high);
         color.a = extinctionFromOpacity(color.a);
         return glm::dvec4(glm::vec4(color));

@@ -1,6 +1,6 @@
 // One segment: the part of the pixel's ray in the clip box, the region's half-spaces and the slab, and in
-// front of the opaque scene. Midpoint rule on a lattice of depths that all bricks share, with exact
-// ends, so second order in the step whatever cuts the segment.
+// front of the opaque scene. Midpoint rule with equal steps and exact ends, so second order in the step
+// whatever cuts the segment.
 
 // What is left of the light when marching stops: the most that this may change any pixel.
 #define OPAQUE_ENOUGH 3e-5
@@ -13,20 +13,22 @@ uniform vec3 clipMin, clipMax;
 uniform vec4 planes[PLANES];
 #endif
 uniform float stepDepth;
-uniform int maximumSteps;
+uniform float maximumSteps;
 #ifdef OPAQUE_DEPTH
 uniform sampler2D opaqueDepth;
-uniform vec2 opaqueDepthScale;  // window -> texture coordinate
-uniform vec2 opaqueDepthOffset;
+uniform vec2 depthTextureScale; // window -> texture coordinate
 uniform vec3 clipZOrigin, clipZDirection, clipWOrigin, clipWDirection; // times (dx, dy, 1)
+#endif
+#ifdef LAYER_DEPTH
+uniform sampler2D layerDepth; // of the surfaces that split this segment
+uniform bool inFrontOfLayer;  // which part is drawn
 #endif
 
 #ifdef OPAQUE_DEPTH
-// Where the ray meets the opaque scene.
-float opaqueEnd()
+// Where the ray meets what left its depth in a buffer; far away where nothing did.
+float depthOnRay(sampler2D depths)
 {
-    float windowZ =
-        textureLod(opaqueDepth, gl_FragCoord.xy * opaqueDepthScale + opaqueDepthOffset, 0.0).r;
+    float windowZ = textureLod(depths, gl_FragCoord.xy * depthTextureScale, 0.0).r;
     if (windowZ >= 1.0) return 1e30;
     vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
     float z = 2.0 * windowZ - 1.0;
@@ -48,35 +50,40 @@ void clipToPlane(vec4 plane, vec3 origin, vec3 direction, inout float tNear, ino
         tFar = tNear;
 }
 
+// Number of steps for a segment, such that their mean over all segments is the period.
+float stepsOf(float tNear, float tFar)
+{
+    return clamp(floor((tFar - tNear) / stepDepth + 0.5), 1.0, maximumSteps);
+}
+
 // Light of the segment [tNear, tFar], front to back: premultiplied colour, opacity.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
 {
-    float unitsPerDepth = length(frameToUnits * direction);
+    float count = stepsOf(tNear, tFar);
+    float dt = (tFar - tNear) / count;
+    vec3 dp = direction * dt;
+    float stepUnits = dt * length(frameToUnits * direction);
     vec3 color = vec3(0.0);
     float transmittance = 1.0;
-    float cell = floor(tNear / stepDepth) + 1.0;
-    float t = tNear;
 #ifdef PREINTEGRATED
-    float coordinate = tableCoordinate(origin + direction * t);
-    vec4 integral = tableIntegral(coordinate);
-#endif
-    for (int i = 0; i < maximumSteps && t < tFar; ++i) {
-        float end = min(cell * stepDepth, tFar);
-#ifdef PREINTEGRATED
-        float nextCoordinate = tableCoordinate(origin + direction * end);
-        vec4 nextIntegral = tableIntegral(nextCoordinate);
-        vec4 c = classifyRun(coordinate, integral, nextCoordinate, nextIntegral);
-        coordinate = nextCoordinate;
+    vec3 p = origin + direction * tNear;
+    float entry = tableEntry(p);
+    vec4 integral = tableIntegral(entry);
+    for (float i = 1.0; i <= count; i += 1.0) {
+        float nextEntry = tableEntry(p + i * dp);
+        vec4 nextIntegral = tableIntegral(nextEntry);
+        vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
+        entry = nextEntry;
         integral = nextIntegral;
 #else
-        vec4 c = classify(origin + direction * (0.5 * (t + end)));
+    vec3 p = origin + direction * (tNear + 0.5 * dt);
+    for (float i = 0.0; i < count; i += 1.0) {
+        vec4 c = classify(p + i * dp);
 #endif
-        float through = exp2(-c.a * (end - t) * unitsPerDepth);
+        float through = exp2(-c.a * stepUnits);
         color += transmittance * (1.0 - through) * c.rgb;
         transmittance *= through;
         if (transmittance < OPAQUE_ENOUGH) break;
-        t = max(t, end);
-        cell += 1.0;
     }
     return vec4(color, 1.0 - transmittance);
 }
@@ -95,8 +102,16 @@ void main()
     for (int i = 0; i < PLANES; ++i) clipToPlane(planes[i], origin, direction, tNear, tFar);
 #endif
 #ifdef OPAQUE_DEPTH
-    tFar = min(tFar, opaqueEnd());
+    tFar = min(tFar, depthOnRay(opaqueDepth));
 #endif
+#ifdef LAYER_DEPTH
+    float tLayer = depthOnRay(layerDepth);
+    if (!inFrontOfLayer && tLayer < 1e29)
+        tNear = max(tNear, tLayer);
+    else if (inFrontOfLayer)
+        tFar = tLayer < 1e29 ? min(tFar, tLayer) : tNear;
+#endif
+    if (!(tNear < tFar)) discard;
 
     fragColor = march(origin, direction, tNear, tFar);
 }

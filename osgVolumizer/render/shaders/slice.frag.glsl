@@ -24,9 +24,10 @@ void main()
 #endif
 #ifdef PREINTEGRATED
     // The layer's own ends; one frame unit of the ray is `direction`.
-    vec3 half = 0.5 * layer * direction;
-    float x0 = tableCoordinate(voxelCoordinate - half), x1 = tableCoordinate(voxelCoordinate + half);
-    vec4 c = classifyRun(x0, tableIntegral(x0), x1, tableIntegral(x1));
+    vec3 halfLayer = 0.5 * layer * direction;
+    float entry0 = tableEntry(voxelCoordinate - halfLayer);
+    float entry1 = tableEntry(voxelCoordinate + halfLayer);
+    vec4 c = classifyRun(entry0, tableIntegral(entry0), entry1, tableIntegral(entry1));
 #else
     vec4 c = classify(voxelCoordinate);
 #endif

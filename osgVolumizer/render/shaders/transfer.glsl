@@ -2,8 +2,20 @@
 
 #ifdef VOXELS
 #ifndef RGBA
-uniform sampler2D lookupTable; // r, g, b, extinction in bits (-log2 of transmittance) per opacity unit
-uniform vec2 valueToTable;     // texel -> coordinate in the table
+uniform samplerBuffer lookupTable; // r, g, b, extinction in bits (-log2 of transmittance) per opacity unit
+uniform vec2 valueToEntry;         // texel -> entry of the table
+uniform float lastEntry;
+
+vec4 entryAt(float entry)
+{
+    float held = clamp(entry, 0.0, lastEntry);
+#ifdef SMOOTH_TABLE
+    int low = int(held); // one more texel than entries, for the last
+    return mix(texelFetch(lookupTable, low), texelFetch(lookupTable, low + 1), fract(held));
+#else
+    return texelFetch(lookupTable, int(held + 0.5));
+#endif
+}
 #endif
 
 // rgb: emitted colour; a: extinction, bits per opacity unit.
@@ -11,10 +23,8 @@ vec4 classifyTexel(TEXEL texel)
 {
 #ifdef RGBA
     return vec4(texel.rgb, -log2(max(1.0 - texel.a, 5.9604645e-8)));
-#elif defined(PREINTEGRATED)
-    return textureLod(lookupTable, vec2(texel * valueToTable.x + valueToTable.y, 0.25), 0.0);
 #else
-    return textureLod(lookupTable, vec2(texel * valueToTable.x + valueToTable.y, 0.5), 0.0);
+    return entryAt(texel * valueToEntry.x + valueToEntry.y);
 #endif
 }
 #endif
@@ -59,29 +69,28 @@ vec4 classify(vec3 voxelCoordinate)
 }
 
 #ifdef PREINTEGRATED
-uniform vec2 tableEnds;           // coordinates of the outermost texels' centres
-uniform float tableTexel;         // distance between texels
 uniform vec4 tableLow, tableHigh; // extinction times colour, extinction: beyond the ends
 
-// The table's integral up to a coordinate.
-vec4 tableIntegral(float x)
+// The entry nearest to the value at a point; beyond the table's ends too.
+float tableEntry(vec3 voxelCoordinate)
 {
-    return textureLod(lookupTable, vec2(x, 0.75), 0.0) + min(x - tableEnds.x, 0.0) * tableLow +
-           max(x - tableEnds.y, 0.0) * tableHigh;
+    return floor(voxelAt(voxelCoordinate) * valueToEntry.x + valueToEntry.y + 0.5);
 }
 
-float tableCoordinate(vec3 voxelCoordinate)
+// The table's integral from its first entry to another.
+vec4 tableIntegral(float entry)
 {
-    return voxelAt(voxelCoordinate) * valueToTable.x + valueToTable.y;
+    float held = clamp(entry, 0.0, lastEntry);
+    return texelFetch(lookupTable, int(held + lastEntry + 1.5)) + min(entry, 0.0) * tableLow +
+           max(entry - lastEntry, 0.0) * tableHigh;
 }
 
-// Mean over the values that a piece of the ray runs through, from one table coordinate to another.
-vec4 classifyRun(float x0, vec4 integral0, float x1, vec4 integral1)
+// Mean over the entries that a piece of the ray runs through.
+vec4 classifyRun(float entry0, vec4 integral0, float entry1, vec4 integral1)
 {
-    float run = x1 - x0;
-    // Within a texel the table is as good, and a difference of integrals would lose its digits.
-    if (abs(run) <= tableTexel)
-        return textureLod(lookupTable, vec2(0.5 * (x0 + x1), 0.25), 0.0);
+    float run = entry1 - entry0;
+    // In a short run the table is as good, and a difference of integrals would lose its digits.
+    if (abs(run) <= 4.0) return entryAt(0.5 * (entry0 + entry1));
     vec4 mean = max((integral1 - integral0) / run, 0.0);
     return vec4(mean.rgb / max(mean.a, 1e-12), mean.a);
 }

@@ -53,7 +53,9 @@ TEXEL cubicRow(ivec3 i, vec4 w)
 // The voxels' value at a point, as a texel.
 TEXEL voxelAt(vec3 voxelCoordinate)
 {
-#if defined(CUBIC)
+#if defined(NEAREST)
+    return texelAt(ivec3(floor(brickCoordinate(voxelCoordinate) + 0.5)));
+#elif defined(CUBIC)
     ivec3 cell;
     vec3 f;
     cellAt(voxelCoordinate, cell, f);
