@@ -64,13 +64,13 @@ void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block
         lowest = std::min(lowest, passed[i]);
         highest = std::max(highest, passed[i]);
     }
-    if (lowest == highest && !plan.primitive) return;
+    if (lowest == highest && !plan.primitive) return; // PRIMITIVE has layers of its own
 
     const std::size_t start = chunk.entryCount;
     const TetraBlocks::Tetra* tetra = blocks.tetrahedra.data() + block.firstTetra;
     const TetraBlocks::Place* place =
         blocks.places.empty() ? nullptr : blocks.places.data() + block.firstTetra;
-    if (!place && !plan.primitive) {
+    if (!place && !plan.general()) {
         listFaces(tetra, 0, block.tetraCount, passed, chunk);
     } else {
         // Runs of tetrahedra that are whole in their boxes go the fast way.
@@ -79,7 +79,7 @@ void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block
             const TetraBlocks::Place p = place ? place[t] : 0;
             const bool flush = p < TetraBlocks::OUTSIDE && p > TetraBlocks::BOX_MASK &&
                                flushFace(blocks, block, tetra[t], p >> TetraBlocks::FACE_SHIFT);
-            if (p < TetraBlocks::OUTSIDE && !flush && !plan.primitive) continue;
+            if (p < TetraBlocks::OUTSIDE && !flush && !plan.general()) continue;
             listFaces(tetra, runStart, t - runStart, passed, chunk);
             runStart = t + 1;
             if (p != TetraBlocks::OUTSIDE) clipTetra(plan, block, tetra[t], chunk);

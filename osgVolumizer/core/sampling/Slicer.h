@@ -29,6 +29,10 @@ struct SlicePlan
     const int* rank = nullptr;              ///< place in the output of surface firstSurface + i
     int brickCount = 1;
     bool primitive = false;
+    /// Convex pieces, as half-spaces relative to the origin, that faces are cut down to; or null.
+    const std::vector<std::vector<Plane>>* pieces = nullptr;
+    /// Whether every face needs the general way.
+    bool general() const { return primitive || pieces; }
     /// Blocks that lie outside one of these half-spaces are left out.
     std::vector<Plane> visible;
 };
@@ -75,10 +79,10 @@ public:
         std::size_t clippedVertex = 0;    ///< where the points of clipped faces begin
         // Faces that were clipped, in the order of making.
         std::vector<std::uint32_t> bins;
-        std::vector<std::uint8_t> sizes;
+        std::vector<std::uint16_t> sizes;
         std::vector<float> vertices;
         std::vector<float> spacings;
-        RecordPolygon whole, part;
+        RecordPolygon whole, part, uncut;
         // Scratch of one block: its points (surface << 32 | near vertex << 8 | far vertex), and for
         // each edge the number of its point on surface 0, if it had one.
         std::vector<std::uint64_t> points;
