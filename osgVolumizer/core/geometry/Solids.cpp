@@ -98,7 +98,7 @@ Result<TetraSet> tessellateBox(const Box3d& box, BoxTessellation how)
     }
     for (int i = 0; i < 8; ++i) addVertex(set, box.corner(i));
     if (how == BoxTessellation::FIVE) {
-        set.indices = {0, 5, 3, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 5, 0, 6, 7, 3, 6, 5};
+        set.indices = {0, 5, 3, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 5, 0, 6, 7, 3, 5, 6};
         return set;
     }
     static constexpr Index rings[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
