@@ -99,11 +99,14 @@ Status writeSlices(OIIO::ImageOutput& out, const VoxelSource& source, const std:
         Status status = source.read({{0, 0, z}, {d.size.x, d.size.y, z + 1}}, slice.data());
         if (!status.ok()) return status;
         const auto mode = z ? OIIO::ImageOutput::AppendSubimage : OIIO::ImageOutput::Create;
-        // Some formats take a narrower type without a word.
         if (!out.open(part, spec, mode))
             return {ErrorCode::FILE_UNREADABLE,
                     name + " cannot be written: " + oneLine(out.geterror())};
-        if (out.spec().format != spec.format)
+        // A format that lacks a type takes another without a word; only a wider one keeps the
+        // values.
+        const bool widened =
+            d.type == VoxelType::HALF && out.spec().format == OIIO::TypeDesc::FLOAT;
+        if (out.spec().format != spec.format && !widened)
             return {ErrorCode::NOT_SUPPORTED,
                     name + ": the format cannot hold voxels of type " + voxelTypeName(d.type)};
         if (!out.write_image(spec.format, slice.data()))
