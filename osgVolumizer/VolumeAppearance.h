@@ -44,6 +44,36 @@ public:
         PREINTEGRATED
     };
 
+    /// What a pixel shows of the values on its ray, within the volume and in front of opaque geometry.
+    enum RayFunction {
+        /// Light emitted and absorbed along the ray. All other functions draw the volume as one layer,
+        /// in depth order by its centre.
+        COMPOSITE,
+        /// The highest value, which is then looked up: colour, and opacity as for a layer one unit
+        /// thick. Of RGBA voxels: of each premultiplied component.
+        MAXIMUM,
+        /// The lowest value, likewise.
+        MINIMUM,
+        /// The mean value over the length of the ray, then looked up. Not for RGBA voxels.
+        AVERAGE,
+        /// The integral of the value, as a fraction of the range, over the length in opacity units, then
+        /// looked up as a fraction: choose the opacity unit such that sums lie in [0, 1]. Not for
+        /// RGBA voxels.
+        SUM,
+        /// The first place where the interpolated value crosses the iso-value, opaque, in the table's
+        /// colour; needs a region that is convex per brick. Not for RGBA voxels. Where the
+        /// ray enters with a value already beyond there is no surface.
+        ISOSURFACE
+    };
+    /// Where gradients for shading come from. Both are central differences over a sample's distance.
+    enum Gradients {
+        /// Six more samples of the voxels each time; no memory.
+        ON_THE_FLY,
+        /// One sample of a texture that holds gradients besides values; four times the memory (of 8-bit
+        /// voxels eight times).
+        PRECOMPUTED
+    };
+
     VolumeAppearance();
     VolumeAppearance(const VolumeAppearance& o,
                      const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
@@ -64,6 +94,33 @@ public:
     /// interpolation in 32-bit floats from fetched samples, about half as fast. Off by default.
     void setExactFiltering(bool exact) { _exactFiltering = exact; }
     bool getExactFiltering() const { return _exactFiltering; }
+    void setRayFunction(RayFunction function) { _rayFunction = function; }
+    RayFunction getRayFunction() const { return _rayFunction; }
+    /// Of ISOSURFACE, as a data value; finite. Default 0.5.
+    Status setIsoValue(double dataValue);
+    double getIsoValue() const { return _isoValue; }
+
+    /// Lights the volume with the scene's lights (osg::LightSource, the viewer's head light; up to eight, a head
+    /// light where there is none): Blinn-Phong, two-sided, normals from the gradient. Off by
+    /// default. Where the voxels do not vary there is no normal, and only ambient light.
+    void setShading(bool shading) { _shading = shading; }
+    bool getShading() const { return _shading; }
+    /// colour * (ambient + sum over lights (light's ambient + diffuse * light's diffuse * |n l|)) +
+    /// specular * light's specular * |n h|^shininess; each >= 0. Defaults 0.2, 0.8, 0.3, 32.
+    struct Material
+    {
+        double ambient = 0.2, diffuse = 0.8, specular = 0.3, shininess = 32.0;
+    };
+    Status setMaterial(const Material& material);
+    const Material& getMaterial() const { return _material; }
+    void setGradients(Gradients gradients) { _gradients = gradients; }
+    Gradients getGradients() const { return _gradients; }
+
+    /// Bits per colour channel, 8, 16 or 32 (default), that volumes are accumulated in, whatever the framebuffer
+    /// has; in one view the largest of its volumes. 8 bits round every blend.
+    Status setAccumulationBits(int bits);
+    int getAccumulationBits() const { return _accumulationBits; }
+
     /// Samples that bricks must share for interpolation and shading to show no seams: 1, and 2 more
     /// each for CUBIC and for shading. Voxels::setOverlap() should get at least this; with less,
     /// an error is reported, CUBIC falls back to LINEAR, and shading shows seams.
@@ -104,6 +161,12 @@ private:
     Interpolation _interpolation = LINEAR;
     Lookup _lookup = AUTOMATIC_LOOKUP;
     bool _exactFiltering = false;
+    RayFunction _rayFunction = COMPOSITE;
+    double _isoValue = 0.5;
+    bool _shading = false;
+    Material _material;
+    Gradients _gradients = ON_THE_FLY;
+    int _accumulationBits = 32;
     core::SamplingParameters _sampling;
     double _opacityUnit = 0.0;
     std::unique_ptr<render::TableTextures> _tableTextures;

@@ -28,7 +28,8 @@ void release(ContextResources& resources, unsigned contextId)
         resources.vertices.release(*gl);
         resources.indices.release(*gl);
         for (GLuint* name :
-             {&resources.accumulation.framebuffer, &resources.accumulation.layerFramebuffer})
+             {&resources.accumulation.framebuffer, &resources.accumulation.layerFramebuffer,
+              &resources.rays.framebuffer})
             if (*name) gl->glDeleteFramebuffers(1, name);
     }
 }

@@ -31,6 +31,14 @@ struct AccumulationBuffers
     osg::ref_ptr<osg::Texture2D> color, depth, opaqueDepth, layerDepth;
 };
 
+/// Where values of rays are gathered. One a context, grown to the largest viewport seen.
+struct RayBuffers
+{
+    int width = 0, height = 0;
+    GLuint framebuffer = 0;
+    osg::ref_ptr<osg::Texture2D> color;
+};
+
 /// What the renderer keeps per context, made when first needed.
 struct ContextResources
 {
@@ -40,6 +48,7 @@ struct ContextResources
     GetAttachmentParameter glGetFramebufferAttachmentParameteriv = nullptr; ///< not one of OSG's
     StreamBuffer vertices, indices;
     AccumulationBuffers accumulation;
+    RayBuffers rays;
 };
 
 /// The resources of the current context; call only while it is current.

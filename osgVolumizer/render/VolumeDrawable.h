@@ -1,5 +1,6 @@
 #pragma once
 
+#include "SceneLights.h"
 #include "TableTextures.h"
 #include "VolumeProgram.h"
 
@@ -49,6 +50,11 @@ struct VolumeLook
     ProgramFeatures features;
     TableTexture table;
     glm::vec2 valueToEntry{1.0f, 0.0f}; ///< scale and offset: texel -> entry of the table
+    double texelToFraction = 1.0; ///< scale of texels to fractions of the range
+    float isoTexel = 0.0f;
+    glm::vec4 material{0.0f}; ///< ambient, diffuse, specular, shininess
+    glm::vec2 gradientDecode{1.0f, 0.0f}; ///< scale, offset: gradient texture -> texels per voxel
+    std::vector<EyeLight> lights;         ///< of the stage; some may be off
     glm::dmat3 frameToUnits{1.0};     ///< frame vector -> opacity units
     glm::dvec3 center{0.0};           ///< frame; the middle of the volume
     double referenceDepth = 0.0;      ///< eye units; depths of slabs are counted from here

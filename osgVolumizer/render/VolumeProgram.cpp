@@ -34,6 +34,11 @@ std::string header(const ProgramFeatures& features)
     define(features.cubic, "CUBIC");
     define(features.before, "BEFORE");
     define(features.preIntegrated, "PREINTEGRATED");
+    static const char* const functions[] = {"COMPOSITE", "MAXIMUM", "MINIMUM",
+                                            "AVERAGE",   "SUM",     "ISOSURFACE"};
+    define(true, functions[features.rayFunction]);
+    define(features.shading, "SHADING");
+    define(features.gradientTexture, "GRADIENT_TEXTURE");
     define(features.smoothTable, "SMOOTH_TABLE");
     define(features.exact || features.nearest || features.cubic || features.before, "FETCH");
     text += "#define PLANES " + std::to_string(features.planeCount) + "\n";
@@ -49,7 +54,8 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
                                       header(features) + shaderSource(kind + ".vert.glsl")));
     std::string fragment = header(features);
     for (const std::string& file : {std::string("voxels.glsl"), std::string("transfer.glsl"),
-                                    std::string("ray.glsl"), kind + ".frag.glsl"})
+                                    std::string("ray.glsl"), std::string("shading.glsl"),
+                                    kind + ".frag.glsl"})
         fragment += shaderSource(file);
     result->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));
     return result;
@@ -90,6 +96,22 @@ osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
     osg::ref_ptr<osg::StateSet>& set = sets[features.key()];
     if (!set) set = makeStateSet(features);
     return set;
+}
+
+osg::ref_ptr<osg::Program> resolveProgram(const ProgramFeatures& features)
+{
+    static std::mutex mutex;
+    static std::map<std::pair<int, bool>, osg::ref_ptr<osg::Program>> programs;
+    std::lock_guard<std::mutex> lock(mutex);
+    osg::ref_ptr<osg::Program>& result = programs[{features.rayFunction, features.rgba}];
+    if (result) return result;
+    result = new osg::Program;
+    result->setName("osgVolumizer resolve");
+    result->addShader(new osg::Shader(osg::Shader::VERTEX,
+                                      header(features) + shaderSource("resolve.vert.glsl")));
+    result->addShader(new osg::Shader(osg::Shader::FRAGMENT,
+                                      header(features) + shaderSource("resolve.frag.glsl")));
+    return result;
 }
 
 } // namespace render

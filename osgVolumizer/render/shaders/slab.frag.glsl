@@ -56,29 +56,122 @@ float stepsOf(float tNear, float tFar)
     return clamp(floor((tFar - tNear) / stepDepth + 0.5), 1.0, maximumSteps);
 }
 
+#if defined(MAXIMUM) || defined(MINIMUM)
+#ifdef RGBA
+vec4 comparable(vec4 texel) { return vec4(texel.rgb * texel.a, texel.a); }
+#else
+float comparable(float texel) { return texel; }
+#endif
+
+// Highest or lowest value on the segment, ends included.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
+{
+    float count = stepsOf(tNear, tFar);
+    vec3 p = origin + direction * tNear, dp = direction * ((tFar - tNear) / count);
+    TEXEL best = comparable(voxelAt(p));
+    for (float i = 1.0; i <= count; i += 1.0) {
+#ifdef MAXIMUM
+        best = max(best, comparable(voxelAt(p + i * dp)));
+#else
+        best = min(best, comparable(voxelAt(p + i * dp)));
+#endif
+    }
+    return vec4(best);
+}
+
+#elif defined(AVERAGE) || defined(SUM)
+// Integral of the value over the segment, and of 1.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
+{
+    float count = stepsOf(tNear, tFar);
+    float dt = (tFar - tNear) / count;
+    vec3 p = origin + direction * (tNear + 0.5 * dt), dp = direction * dt;
+    float sum = 0.0;
+    for (float i = 0.0; i < count; i += 1.0) sum += voxelAt(p + i * dp);
+    float stepUnits = dt * length(frameToUnits * direction);
+    return vec4(sum * stepUnits, count * stepUnits, 0.0, 0.0);
+}
+
+#elif defined(ISOSURFACE)
+uniform float isoTexel;
+
+float overIso(vec3 p) { return voxelAt(p) - isoTexel; }
+
+// Root between t0 and t1, where the function has other signs: false position, Illinois variant (Dowell and
+// Jarratt, "A modified regula falsi method", BIT 11, 1971).
+float rootBetween(vec3 origin, vec3 direction, float t0, float f0, float t1, float f1)
+{
+    for (int i = 0; i < 8 && f1 != 0.0; ++i) {
+        float t = t1 - f1 * (t1 - t0) / (f1 - f0);
+        float f = overIso(origin + direction * t);
+        if (f * f1 < 0.0) {
+            t0 = t1;
+            f0 = f1;
+        } else {
+            f0 *= 0.5;
+        }
+        t1 = t;
+        f1 = f;
+    }
+    return t1;
+}
+
+// The first crossing of the iso-value, opaque.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
+{
+    float count = stepsOf(tNear, tFar);
+    float dt = (tFar - tNear) / count;
+    float before = overIso(origin + direction * tNear);
+    for (float i = 1.0; i <= count; i += 1.0) {
+        float t = tNear + i * dt;
+        float after = overIso(origin + direction * t);
+        if ((before < 0.0) != (after < 0.0)) {
+            t = rootBetween(origin, direction, t - dt, before, t, after);
+            vec3 color = classifyTexel(isoTexel).rgb;
+#ifdef SHADING
+            vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
+            vec3 directionEye = rayDirectionEye * window;
+            color = shade(color, origin + direction * t, rayOriginEye * window + directionEye * t,
+                          -normalize(directionEye));
+#endif
+            return vec4(color, 1.0);
+        }
+        before = after;
+    }
+    return vec4(0.0);
+}
+
+#else
 // Light of the segment [tNear, tFar], front to back: premultiplied colour, opacity.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
 {
     float count = stepsOf(tNear, tFar);
     float dt = (tFar - tNear) / count;
-    vec3 dp = direction * dt;
+    vec3 p = origin + direction * (tNear + 0.5 * dt), dp = direction * dt;
     float stepUnits = dt * length(frameToUnits * direction);
     vec3 color = vec3(0.0);
     float transmittance = 1.0;
+#ifdef SHADING
+    vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
+    vec3 directionEye = rayDirectionEye * window, toEye = -normalize(directionEye);
+    vec3 eye = rayOriginEye * window + directionEye * (tNear + 0.5 * dt);
+#endif
 #ifdef PREINTEGRATED
-    vec3 p = origin + direction * tNear;
-    float entry = tableEntry(p);
+    float entry = tableEntry(p - 0.5 * dp);
     vec4 integral = tableIntegral(entry);
-    for (float i = 1.0; i <= count; i += 1.0) {
-        float nextEntry = tableEntry(p + i * dp);
+#endif
+    for (float i = 0.0; i < count; i += 1.0) {
+#ifdef PREINTEGRATED
+        float nextEntry = tableEntry(p + (i + 0.5) * dp);
         vec4 nextIntegral = tableIntegral(nextEntry);
         vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
         entry = nextEntry;
         integral = nextIntegral;
 #else
-    vec3 p = origin + direction * (tNear + 0.5 * dt);
-    for (float i = 0.0; i < count; i += 1.0) {
         vec4 c = classify(p + i * dp);
+#endif
+#ifdef SHADING
+        if (c.a > 0.0) c.rgb = shade(c.rgb, p + i * dp, eye + i * dt * directionEye, toEye);
 #endif
         float through = exp2(-c.a * stepUnits);
         color += transmittance * (1.0 - through) * c.rgb;
@@ -87,6 +180,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
     }
     return vec4(color, 1.0 - transmittance);
 }
+#endif
 
 void main()
 {
