@@ -41,11 +41,12 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, const TableTextu
                                                  (values.second - range.x()) * toFraction) > 0.0))
                 continue;
         }
-        const BrickTexture texture = textures->get(voxels, i, volume.look->features.gradientTexture);
+        const BrickTexture texture =
+            textures->get(voxels, i, volume.look->features.gradientTexture);
         if (!texture.texture) continue;
         const glm::vec3 size(place.samples.size());
-        volume.bricks.push_back({i, box, texture, 1.0f / size,
-                                 (0.5f - glm::vec3(place.samples.min)) / size});
+        volume.bricks.push_back(
+            {i, box, texture, 1.0f / size, (0.5f - glm::vec3(place.samples.min)) / size});
     }
 }
 

@@ -20,8 +20,10 @@ std::map<unsigned, std::shared_ptr<ContextResources>>& registry()
     return resources;
 }
 
-void release(ContextResources& resources, unsigned contextId)
+void release(ContextResources& resources, osg::State& state)
 {
+    const unsigned contextId = state.getContextID();
+    for (const auto& program : resources.rays.programs) program.second->releaseGLObjects(&state);
     // Without the extensions there never was a context to make anything in.
     osg::GLExtensions* gl = osg::GLExtensions::Get(contextId, false);
     if (gl) {
@@ -74,7 +76,7 @@ void releaseContextResources(osg::State* state)
     }
     const auto entry = registry().find(state->getContextID());
     if (entry == registry().end()) return;
-    release(*entry->second, state->getContextID());
+    release(*entry->second, *state);
     registry().erase(entry);
 }
 

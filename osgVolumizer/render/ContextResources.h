@@ -1,10 +1,13 @@
 #pragma once
 
 #include <osg/GLExtensions>
+#include <osg/Program>
 #include <osg/State>
 #include <osg/Texture2D>
 
+#include <map>
 #include <memory>
+#include <utility>
 
 namespace osgVolumizer {
 namespace render {
@@ -37,6 +40,7 @@ struct RayBuffers
     int width = 0, height = 0;
     GLuint framebuffer = 0;
     osg::ref_ptr<osg::Texture2D> color;
+    std::map<std::pair<int, bool>, osg::ref_ptr<osg::Program>> programs; ///< by ray function, rgba
 };
 
 /// What the renderer keeps per context, made when first needed.

@@ -17,8 +17,8 @@ namespace {
 // What cannot be done, and what is done instead.
 void reportUnsupported(const VolumeAppearance& appearance, const std::string& what)
 {
-    reportOnce({ErrorCode::NOT_SUPPORTED,
-                "VolumeAppearance \"" + appearance.getName() + "\": " + what});
+    reportOnce(
+        {ErrorCode::NOT_SUPPORTED, "VolumeAppearance \"" + appearance.getName() + "\": " + what});
 }
 
 bool overlapSuffices(const Voxels& voxels, int samples)
@@ -53,13 +53,12 @@ VolumeAppearance::RayFunction usedRayFunction(const VolumeAppearance& appearance
     const auto asked = appearance.getRayFunction();
     const Voxels* voxels = appearance.getVoxels();
     if (!voxels || asked == VolumeAppearance::COMPOSITE) return VolumeAppearance::COMPOSITE;
-    const bool extreme =
-        asked == VolumeAppearance::MAXIMUM || asked == VolumeAppearance::MINIMUM;
+    const bool extreme = asked == VolumeAppearance::MAXIMUM || asked == VolumeAppearance::MINIMUM;
     if (voxels->getComponents() != 1 && !extreme) {
-        reportUnsupported(appearance, "averages, sums and isosurfaces need voxels of one component, "
-                                      "but these have " +
-                                          std::to_string(voxels->getComponents()) +
-                                          "; they are composited");
+        reportUnsupported(appearance,
+                          "averages, sums and isosurfaces need voxels of one component, "
+                          "but these have " +
+                              std::to_string(voxels->getComponents()) + "; they are composited");
         return VolumeAppearance::COMPOSITE;
     }
     if (asked == VolumeAppearance::ISOSURFACE && !usesSlabs(appearance, prepared)) {
@@ -78,21 +77,21 @@ bool usesShading(const VolumeAppearance& appearance, const PreparedGeometry& pre
     if (function != VolumeAppearance::COMPOSITE && function != VolumeAppearance::ISOSURFACE)
         return false;
     if (!prepared.voxelFrame) {
-        reportUnsupported(appearance, "shading needs one affine map to the voxel frame; the deformed "
-                                      "volume is not lit");
+        reportUnsupported(appearance,
+                          "shading needs one affine map to the voxel frame; the deformed "
+                          "volume is not lit");
         return false;
     }
     if (!overlapSuffices(*voxels, appearance.getRequiredOverlap()))
-        reportUnsupported(appearance,
-                          "shading without seams needs bricks that share " +
-                              std::to_string(appearance.getRequiredOverlap()) +
-                              " samples, but the voxels' overlap is " +
-                              std::to_string(voxels->getOverlap()));
+        reportUnsupported(appearance, "shading without seams needs bricks that share " +
+                                          std::to_string(appearance.getRequiredOverlap()) +
+                                          " samples, but the voxels' overlap is " +
+                                          std::to_string(voxels->getOverlap()));
     return true;
 }
 
-// Depth between samples: one period, per voxel axis, along the view axis; longer where that would be more
-// samples than allowed.
+// Depth between samples: one period, per voxel axis, along the view axis; longer where that would
+// be more samples than allowed.
 double sampleDepth(const glm::dmat4& toEye, const core::Box3d& bounds,
                    const core::SamplingParameters& sampling)
 {
@@ -115,8 +114,7 @@ void setInterpolation(const VolumeAppearance& appearance, const TableTexture& ta
     const auto interpolation = usedInterpolation(appearance);
     features.nearest = interpolation == VolumeAppearance::NEAREST;
     features.cubic = interpolation == VolumeAppearance::CUBIC;
-    features.exact =
-        interpolation == VolumeAppearance::LINEAR && appearance.getExactFiltering();
+    features.exact = interpolation == VolumeAppearance::LINEAR && appearance.getExactFiltering();
     // Of nearest samples the two orders give the same.
     features.before = features.rayFunction == VolumeAppearance::COMPOSITE && !features.nearest &&
                       appearance.getLookup() == VolumeAppearance::BEFORE_INTERPOLATION;
@@ -162,8 +160,8 @@ void setValues(const VolumeAppearance& appearance, const Voxels& voxels, VolumeL
 VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
                                     const PreparedGeometry& prepared)
 {
-    // Runs of values need scalars that vary, and the ray in the voxel frame, which slices of a deformed
-    // volume do not know.
+    // Runs of values need scalars that vary, and the ray in the voxel frame, which slices of a
+    // deformed volume do not know.
     const bool runs = prepared.voxelFrame && appearance.getVoxels()->getComponents() == 1 &&
                       appearance.getInterpolation() != VolumeAppearance::NEAREST &&
                       usedRayFunction(appearance, prepared) == VolumeAppearance::COMPOSITE;
@@ -180,8 +178,7 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     setFeatures(appearance, prepared, table, features);
     features.spherical = !features.slab && volume.sampling.mode == SamplingMode::SPHERICAL;
     if (appearance.getVoxels()) setValues(appearance, *appearance.getVoxels(), *look);
-    look->frameToUnits =
-        glm::dmat3(prepared.frameToObject) / appearance.getEffectiveOpacityUnit();
+    look->frameToUnits = glm::dmat3(prepared.frameToObject) / appearance.getEffectiveOpacityUnit();
     look->center = prepared.bounds.center();
     const glm::dmat4 toEye = toGlm(*volume.frameToEye);
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;

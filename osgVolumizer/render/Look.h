@@ -9,8 +9,9 @@ namespace render {
 VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
                                     const PreparedGeometry& prepared);
 
-/// What a volume's fragments are shaded with: appearance, prepared geometry, sampling and frameToEye of the volume
-/// decide. What cannot be done as asked is reported once, and done as the message says.
+/// What a volume's fragments are shaded with: appearance, prepared geometry, sampling and
+/// frameToEye of the volume decide. What cannot be done as asked is reported once, and done as the
+/// message says.
 std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table);
 
 } // namespace render

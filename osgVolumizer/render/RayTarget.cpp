@@ -38,7 +38,8 @@ RayTarget::RayTarget(osg::State& state, ContextResources& resources,
     glGetIntegerv(GL_BLEND_EQUATION_ALPHA, &_equation[1]);
     const GLenum names[] = {GL_BLEND_SRC_RGB, GL_BLEND_DST_RGB, GL_BLEND_SRC_ALPHA,
                             GL_BLEND_DST_ALPHA};
-    for (int i = 0; i < 4; ++i) glGetIntegerv(names[i], &_function[i]);
+    for (int i = 0; i < 4; ++i)
+        glGetIntegerv(names[i], &_function[i]);
 
     ensureTarget();
     _gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, _resources.rays.framebuffer);
@@ -91,7 +92,10 @@ void RayTarget::resolve(const VolumeLook& look)
     _gl.glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     glDisable(GL_DEPTH_TEST); // rays ended at the opaque scene already
-    _state.applyAttribute(resolveProgram(_features).get());
+    osg::ref_ptr<osg::Program>& resolving =
+        _resources.rays.programs[{_features.rayFunction, _features.rgba}];
+    if (!resolving) resolving = makeResolveProgram(_features);
+    _state.applyAttribute(resolving.get());
     const auto* program = _state.getLastAppliedProgramObject();
     if (!program) return;
     const Uniforms uniforms(_gl, *program);

@@ -12,7 +12,10 @@ namespace render {
 
 namespace {
 
-glm::vec3 rgb(const osg::Vec4& c) { return {c.r(), c.g(), c.b()}; }
+glm::vec3 rgb(const osg::Vec4& c)
+{
+    return {c.r(), c.g(), c.b()};
+}
 
 EyeLight inEyeFrame(const osg::Light& light, const osg::Matrixd& toEye)
 {
@@ -45,9 +48,8 @@ void append(osgUtil::PositionalStateContainer* container, const osg::Matrixd& af
         if (!light) continue;
         const EyeLight made =
             inEyeFrame(*light, entry.second ? osg::Matrixd(*entry.second) * after : after);
-        const auto same = std::find_if(lights.begin(), lights.end(), [&](const EyeLight& l) {
-            return l.number == made.number;
-        });
+        const auto same = std::find_if(lights.begin(), lights.end(),
+                                       [&](const EyeLight& l) { return l.number == made.number; });
         if (same != lights.end())
             *same = made;
         else

@@ -98,14 +98,9 @@ osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
     return set;
 }
 
-osg::ref_ptr<osg::Program> resolveProgram(const ProgramFeatures& features)
+osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features)
 {
-    static std::mutex mutex;
-    static std::map<std::pair<int, bool>, osg::ref_ptr<osg::Program>> programs;
-    std::lock_guard<std::mutex> lock(mutex);
-    osg::ref_ptr<osg::Program>& result = programs[{features.rayFunction, features.rgba}];
-    if (result) return result;
-    result = new osg::Program;
+    osg::ref_ptr<osg::Program> result = new osg::Program;
     result->setName("osgVolumizer resolve");
     result->addShader(new osg::Shader(osg::Shader::VERTEX,
                                       header(features) + shaderSource("resolve.vert.glsl")));

@@ -66,8 +66,8 @@ enum Attribute : unsigned {
 /// The state that a volume with these features is drawn with: program, blending, depth test without
 /// writes, transparent bin. Shared by all volumes, views and contexts. Thread safe.
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features);
-/// Draws the layer of a volume that gathers(). Shared likewise, thread safe.
-osg::ref_ptr<osg::Program> resolveProgram(const ProgramFeatures& features);
+/// Draws the layer of a volume that gathers(); depends on ray function and rgba only.
+osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features);
 
 } // namespace render
 } // namespace osgVolumizer

@@ -57,27 +57,51 @@ float stepsOf(float tNear, float tFar)
 }
 
 #if defined(MAXIMUM) || defined(MINIMUM)
-#ifdef RGBA
-vec4 comparable(vec4 texel) { return vec4(texel.rgb * texel.a, texel.a); }
+#ifdef MAXIMUM
+#define BETTER(a, b) max(a, b)
 #else
-float comparable(float texel) { return texel; }
+#define BETTER(a, b) min(a, b)
 #endif
 
-// Highest or lowest value on the segment, ends included.
+#ifdef RGBA
+// Highest or lowest premultiplied components on the segment, ends included.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
 {
     float count = stepsOf(tNear, tFar);
     vec3 p = origin + direction * tNear, dp = direction * ((tFar - tNear) / count);
-    TEXEL best = comparable(voxelAt(p));
+    vec4 texel = voxelAt(p);
+    vec4 best = vec4(texel.rgb * texel.a, texel.a);
     for (float i = 1.0; i <= count; i += 1.0) {
-#ifdef MAXIMUM
-        best = max(best, comparable(voxelAt(p + i * dp)));
+        texel = voxelAt(p + i * dp);
+        best = BETTER(best, vec4(texel.rgb * texel.a, texel.a));
+    }
+    return best;
+}
 #else
-        best = min(best, comparable(voxelAt(p + i * dp)));
-#endif
+// Highest or lowest value on the segment, ends included. Between samples the extreme is looked for about the best
+// one, by halving: an interpolant has kinks, which would make plain sampling first order.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
+{
+    float count = stepsOf(tNear, tFar);
+    vec3 p = origin + direction * tNear, dp = direction * ((tFar - tNear) / count);
+    float best = voxelAt(p), at = 0.0;
+    for (float i = 1.0; i <= count; i += 1.0) {
+        float value = voxelAt(p + i * dp);
+        if (BETTER(value, best) != best) at = i;
+        best = BETTER(value, best);
+    }
+    float reach = 0.5;
+    for (int i = 0; i < 5; ++i) {
+        float before = max(at - reach, 0.0), after = min(at + reach, count);
+        float low = voxelAt(p + before * dp), high = voxelAt(p + after * dp);
+        float better = BETTER(low, high);
+        if (BETTER(better, best) != best) at = better == low ? before : after;
+        best = BETTER(better, best);
+        reach *= 0.5;
     }
     return vec4(best);
 }
+#endif
 
 #elif defined(AVERAGE) || defined(SUM)
 // Integral of the value over the segment, and of 1.
