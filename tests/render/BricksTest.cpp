@@ -1,0 +1,85 @@
+// A volume looks the same however it is cut into bricks.
+
+#include "Volumes.h"
+
+#include <support/GLTest.h>
+
+using namespace osgVolumizer;
+using namespace osgVolumizer::test;
+using support::FloatImage;
+using support::RenderOptions;
+
+namespace {
+
+constexpr int SIZE = 33; // voxels per axis
+
+RenderOptions view(const osg::Vec3d& eye, const osg::Vec3d& center, double fovy)
+{
+    RenderOptions options;
+    options.size(90, 80).lookAt(eye, center, {0, 0, 1});
+    if (fovy > 0.0)
+        options.perspective(fovy);
+    else
+        options.orthographic(28.0);
+    return options;
+}
+
+std::vector<RenderOptions> views()
+{
+    const osg::Vec3d middle(16, 16, 16);
+    return {view({70, -50, 60}, middle, 40.0),   // a corner
+            view({-30, 17, 16.5}, middle, 60.0), // nearly along an axis
+            view({50, 16, 16}, middle, 0.0),     // along an axis
+            view({-40, -30, 70}, middle, 0.0),
+            view({16.3, 15.8, 16.1}, {30, 25, 20}, 60.0), // inside, at the corner of eight bricks
+            view({5, 5, 5}, {10, 30, 12}, 90.0)};         // inside
+}
+
+class Bricks : public support::GLTest,
+               public ::testing::WithParamInterface<VolumeAppearance::Technique>
+{
+};
+
+TEST_P(Bricks, OneEightAndSixtyFourShowTheSame)
+{
+    osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(SIZE), bumps);
+    TwinVolume twin = makeTwin(voxels, smoothPoints(0.15), GetParam());
+    const std::vector<RenderOptions> all = views();
+    for (std::size_t v = 0; v < all.size(); ++v) {
+        FloatImage whole;
+        for (const int perAxis : {1, 2, 4}) {
+            ASSERT_TRUE(voxels->setBrickSize(glm::ivec3((SIZE - 1) / perAxis + 1)));
+            ASSERT_EQ(voxels->getLayout().brickCount(), perAxis * perAxis * perAxis);
+            const FloatImage image = support::renderScene(twin.node, all[v]);
+            support::savePicture(image, "bricks_" + std::to_string(GetParam()) + "_view" +
+                                            std::to_string(v) + "_" + std::to_string(perAxis));
+            if (perAxis == 1) {
+                whole = image;
+                EXPECT_GT(support::coveredPixels(image, 0.3f).count(), 1000u);
+                continue;
+            }
+            const support::Difference d = compare(image, whole);
+            EXPECT_LT(d.maximum, 1e-4) << "view " << v << ", " << perAxis << " bricks per axis, at "
+                                       << d.worstX << " " << d.worstY;
+        }
+    }
+}
+
+TEST_P(Bricks, UnevenOnesAgreeWithTheOracle)
+{
+    // Sizes that no brick size divides, and a brick of one layer of cells at the end.
+    osg::ref_ptr<Voxels> voxels = makeVoxels({18, 25, 12}, bumps);
+    ASSERT_TRUE(voxels->setBrickSize({9, 7, 11}));
+    TwinVolume twin = makeTwin(voxels, smoothPoints(0.08), GetParam());
+    twin.setPeriod(0.25);
+    const RenderOptions options = view({40, -30, 30}, {8, 12, 6}, 45.0);
+    const FloatImage image = support::renderScene(twin.node, options);
+    const FloatImage expected = oraclePicture(oracleScene(twin.oracle), options);
+    EXPECT_LT(compare(image, expected).rmse, 2e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Techniques, Bricks,
+                         ::testing::Values(VolumeAppearance::SLABS, VolumeAppearance::SLICES),
+                         techniqueName);
+
+} // namespace
