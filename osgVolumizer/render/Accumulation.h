@@ -3,6 +3,7 @@
 #include "ContextResources.h"
 
 #include <osg/Drawable>
+#include <osgUtil/RenderLeaf>
 
 namespace osgVolumizer {
 namespace render {
@@ -27,6 +28,10 @@ public:
 
     void begin(osg::RenderInfo& renderInfo);
     void end(osg::RenderInfo& renderInfo);
+    /// Redirects drawing to an empty depth buffer, where surfaces leave their nearest depth...
+    void beginLayer(osg::RenderInfo& renderInfo);
+    /// ...for segments to be split at.
+    void endLayer(osg::RenderInfo& renderInfo);
 
 private:
     bool needsTarget(const ContextResources& resources) const;
@@ -38,11 +43,11 @@ private:
     GLint _drawFramebuffer = 0, _readFramebuffer = 0, _sampleBuffers = 0;
 };
 
-/// The leaf that calls Accumulation::begin or end.
+/// The leaf that calls one of Accumulation's steps.
 class AccumulationLeaf : public osg::Drawable
 {
 public:
-    enum Step { BEGIN, END };
+    enum Step { BEGIN, END, BEGIN_LAYER, END_LAYER };
 
     AccumulationLeaf(Accumulation* accumulation, Step step);
     osg::Object* cloneType() const override { return new AccumulationLeaf(nullptr, BEGIN); }
@@ -55,6 +60,10 @@ private:
     osg::ref_ptr<Accumulation> _accumulation;
     Step _step;
 };
+
+/// A leaf for a step, among the leaves of the same bin and view as `beside`.
+osgUtil::RenderLeaf* accumulationLeaf(Accumulation& accumulation, AccumulationLeaf::Step step,
+                                      const osgUtil::RenderLeaf& beside);
 
 } // namespace render
 } // namespace osgVolumizer

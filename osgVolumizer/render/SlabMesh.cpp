@@ -34,7 +34,7 @@ public:
         _mesh->slabOffset = 3;
     }
 
-    void append(const DepthInterval& interval)
+    void append(const core::DepthInterval& interval)
     {
         for (const SelectedBrick& brick : _volume.bricks) appendBrick(brick, interval);
     }
@@ -42,9 +42,9 @@ public:
 
 private:
     // Depths of a box, to leave out the bricks and the cuts that an interval does not need.
-    DepthInterval depthsOf(const core::Box3d& box) const
+    core::DepthInterval depthsOf(const core::Box3d& box) const
     {
-        DepthInterval r{std::numeric_limits<double>::infinity(),
+        core::DepthInterval r{std::numeric_limits<double>::infinity(),
                         -std::numeric_limits<double>::infinity()};
         for (int i = 0; i < 8; ++i) {
             const double d = depthPlane(_view.toEye, 0.0).distance(box.corner(i));
@@ -54,9 +54,9 @@ private:
         return r;
     }
 
-    void appendBrick(const SelectedBrick& brick, const DepthInterval& interval)
+    void appendBrick(const SelectedBrick& brick, const core::DepthInterval& interval)
     {
-        const DepthInterval depths = depthsOf(brick.box);
+        const core::DepthInterval depths = depthsOf(brick.box);
         if (depths.farDepth <= interval.nearDepth || depths.nearDepth >= interval.farDepth) return;
         _polytope.setBox(brick.box);
         for (const core::Plane& plane : _volume.prepared->obliquePlanes) _polytope.clip(plane, CUT);
@@ -87,7 +87,7 @@ private:
         return glm::dot(_polytope.faceNormal(face), glm::dvec3(_eye) - v * _eye.w) > 0.0;
     }
 
-    void appendFaces(const DepthInterval& interval)
+    void appendFaces(const core::DepthInterval& interval)
     {
         const double reference = _volume.look->referenceDepth;
         for (std::size_t f = 0; f < _polytope.faceCount(); ++f) {
@@ -117,12 +117,12 @@ private:
 } // namespace
 
 std::shared_ptr<const VolumeMesh> slabMesh(const VolumeInstance& volume, const core::View& view,
-                                           const std::vector<DepthInterval>& farToNear)
+                                           const std::vector<core::DepthInterval>& farToNear)
 {
     const Result<glm::dvec4> eye = core::eyePosition(view);
     if (!eye) return std::make_shared<VolumeMesh>();
     SlabMeshBuilder builder(volume, view, *eye);
-    for (const DepthInterval& interval : farToNear) builder.append(interval);
+    for (const core::DepthInterval& interval : farToNear) builder.append(interval);
     return builder.take();
 }
 

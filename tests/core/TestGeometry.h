@@ -55,7 +55,8 @@ inline core::TetraSet makeBox(const glm::dvec3& min, const glm::dvec3& max)
     core::TetraSet set;
     set.vertices.resize(8);
     const core::Box3d box{min, max};
-    for (int i = 0; i < 8; ++i) set.vertices.setPosition(std::size_t(i), box.corner(i));
+    for (int i = 0; i < 8; ++i)
+        set.vertices.setPosition(std::size_t(i), box.corner(i));
     addCell(set, {0, 1, 2, 3, 4, 5, 6, 7}, false);
     return set;
 }
