@@ -148,7 +148,7 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     }
     look->frameToUnits =
         glm::dmat3(prepared.frameToObject) / appearance.getEffectiveOpacityUnit();
-    look->center = prepared.bounds.center();
+    look->center = prepared.regionBox.center();
     const glm::dmat4 toEye = toGlm(*volume.frameToEye);
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;
     look->step = sampleDepth(toEye, prepared.regionBox, volume.sampling);
