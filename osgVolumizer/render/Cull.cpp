@@ -107,7 +107,27 @@ double sampleDepth(const glm::dmat4& toEye, const core::Box3d& bounds,
     return std::max(1.0 / samplesPerDepth, (farthest - nearest) / sampling.maximumSamples);
 }
 
-std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table)
+// See VolumeLook::pixelMargin.
+glm::dvec3 pixelMargin(const glm::dmat4& toEye, const core::Box3d& bounds,
+                       osgUtil::CullVisitor& visitor)
+{
+    constexpr double PIXELS = 0.125; // GL keeps at least 4 bits of a pixel's fraction
+    const osg::Viewport* viewport = visitor.getViewport();
+    if (!viewport || !visitor.getProjectionMatrix()) return glm::dvec3(0.0);
+    const glm::dmat4 p = toGlm(*visitor.getProjectionMatrix());
+    double w = 0.0;
+    for (int i = 0; i < 8; ++i)
+        w = std::max(w, p[3][3] + p[2][3] * (toEye * glm::dvec4(bounds.corner(i), 1.0)).z);
+    const glm::dmat2 clipToEye = glm::inverse(glm::dmat2(p));
+    const glm::dmat3 fromEye = glm::inverse(glm::dmat3(toEye));
+    const glm::dvec3 right(clipToEye[0] * (2.0 * w / viewport->width()), 0.0);
+    const glm::dvec3 up(clipToEye[1] * (2.0 * w / viewport->height()), 0.0);
+    const glm::dvec3 margin = PIXELS * (glm::abs(fromEye * right) + glm::abs(fromEye * up));
+    return std::isfinite(margin.x + margin.y + margin.z) ? margin : glm::dvec3(0.0);
+}
+
+std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table,
+                                     osgUtil::CullVisitor& visitor)
 {
     const VolumeAppearance& appearance = *volume.appearance;
     const Voxels* voxels = appearance.getVoxels();
@@ -128,12 +148,15 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     }
     look->frameToUnits =
         glm::dmat3(prepared.frameToObject) / appearance.getEffectiveOpacityUnit();
-    look->center = prepared.bounds.center();
+    look->center = prepared.regionBox.center();
     const glm::dmat4 toEye = toGlm(*volume.frameToEye);
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;
     look->step = sampleDepth(toEye, prepared.regionBox, volume.sampling);
     look->maximumSteps = volume.sampling.maximumSamples + 2;
     if (features.slab) {
+        look->regionMin = glm::vec3(prepared.regionBox.min);
+        look->regionMax = glm::vec3(prepared.regionBox.max);
+        look->pixelMargin = pixelMargin(toEye, prepared.regionBox, visitor);
         features.planeCount = static_cast<int>(prepared.obliquePlanes.size());
         for (const core::Plane& p : prepared.obliquePlanes)
             look->planes.emplace_back(glm::dvec4(p.normal, p.offset));
@@ -190,7 +213,7 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
         return;
     volume->frameToEye =
         new osg::RefMatrix(toOsg(toGlm(objectToEye) * volume->prepared->frameToObject));
-    volume->look = makeLook(*volume, table);
+    volume->look = makeLook(*volume, table, visitor);
 
     if (osg::StateSet* own = geometry.getStateSet()) visitor.pushStateSet(own);
     registerVolume(std::move(volume), visitor);

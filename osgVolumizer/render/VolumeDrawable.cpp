@@ -83,6 +83,8 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
         uniforms.set("latticeOffset", static_cast<float>(look.latticeOffset));
         if (look.features.layerDepth)
             uniforms.set("inFrontOfLayer", look.inFrontOfLayer ? 1 : 0);
+        uniforms.set("regionMin", look.regionMin);
+        uniforms.set("regionMax", look.regionMax);
         uniforms.set("planes", look.planes);
     } else {
         uniforms.set("surfaceNormal", glm::vec3(look.surfaceNormal));

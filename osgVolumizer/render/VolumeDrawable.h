@@ -57,6 +57,11 @@ struct VolumeLook
     bool inFrontOfLayer = false;      ///< slabs: which part of a segment split by surfaces
     std::vector<glm::ivec4> scissors; ///< window rectangles to draw in; none: everywhere
     int maximumSteps = 1;
+    glm::vec3 regionMin{0.0f}, regionMax{0.0f}; ///< slabs: box of the whole volume (frame)
+    /// Slabs: part of a pixel, in the frame. Faces are this much larger than what they stand for: which
+    /// pixels a segment covers is for the shader to say, whose answer does not depend on how GL
+    /// rounds vertices or whom it gives the pixels on an edge.
+    glm::dvec3 pixelMargin{0.0};
     std::vector<glm::vec4> planes; ///< the region's half-spaces (frame)
 };
 

@@ -61,6 +61,8 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     // OSG's transparent bins drop fragments of alpha 0, which may still carry colour.
     set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f),
                               StateAttribute::OFF | StateAttribute::PROTECTED);
+    // Segments end at near and far themselves: rounding must not cut off the face on the near plane.
+    if (features.slab) set->setMode(GL_DEPTH_CLAMP, StateAttribute::ON | StateAttribute::PROTECTED);
     set->setMode(GL_CULL_FACE, StateAttribute::OFF | StateAttribute::PROTECTED);
     set->addUniform(new osg::Uniform("voxels", int(UNIT_VOXELS)));
     set->addUniform(new osg::Uniform("lookupTable", int(UNIT_TABLE)));

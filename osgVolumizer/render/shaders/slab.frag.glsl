@@ -1,6 +1,7 @@
-// One segment: the part of the pixel's ray in the clip box, the region's half-spaces and the slab, and in
-// front of the opaque scene. Midpoint rule on a lattice of depths that all bricks share, with exact
-// ends, so second order in the step whatever cuts the segment.
+// One segment: the part of the pixel's ray in the volume's region and the slab, and in front of the opaque
+// scene. Midpoint rule on a lattice of depths, with exact ends, so second order in the step whatever
+// cuts the segment. A brick draws those cells of the lattice whose midpoints lie in its clip box: bricks
+// add no ends, and however many there are, all samples stay where they are.
 
 // What is left of the light when marching stops: the most that this may change any pixel.
 #define OPAQUE_ENOUGH 3e-5
@@ -8,7 +9,8 @@
 flat in vec2 slab; // nearest and farthest depth, from the reference depth
 out vec4 fragColor;
 
-uniform vec3 clipMin, clipMax;
+uniform vec3 regionMin, regionMax; // of the whole volume
+uniform vec3 clipMin, clipMax;     // of the brick
 #if PLANES > 0
 uniform vec4 planes[PLANES];
 #endif
@@ -51,16 +53,28 @@ void clipToPlane(vec4 plane, vec3 origin, vec3 direction, inout float tNear, ino
         tFar = tNear;
 }
 
+// The segment in a box; boxes are half-open, so that neighbours share no ray and leave none out.
+vec2 boxSegment(vec3 low, vec3 high, vec3 origin, vec3 direction)
+{
+    bvec3 parallel = equal(direction, vec3(0.0));
+    vec3 safe = mix(direction, vec3(1.0), parallel);
+    vec3 a = (low - origin) / safe;
+    vec3 b = (high - origin) / safe;
+    vec3 always = mix(vec3(1e30), vec3(-1e30), lessThanEqual(low, origin));
+    always = mix(vec3(1e30), always, lessThan(origin, high));
+    vec3 enter = mix(min(a, b), always, parallel);
+    vec3 leave = mix(max(a, b), -always, parallel);
+    return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
+}
+
 void main()
 {
     vec3 origin, direction;
     pixelRay(origin, direction);
-    vec3 safe = mix(direction, vec3(1e-30), equal(direction, vec3(0.0)));
-    vec3 a = (clipMin - origin) / safe;
-    vec3 b = (clipMax - origin) / safe;
-    vec3 enter = min(a, b), leave = max(a, b);
-    float tNear = max(max(enter.x, enter.y), max(enter.z, slab.x));
-    float tFar = min(min(leave.x, leave.y), min(leave.z, slab.y));
+    vec2 region = boxSegment(regionMin, regionMax, origin, direction);
+    vec2 brick = boxSegment(clipMin, clipMax, origin, direction);
+    float tNear = max(region.x, slab.x);
+    float tFar = min(region.y, slab.y);
 #if PLANES > 0
     for (int i = 0; i < PLANES; ++i) clipToPlane(planes[i], origin, direction, tNear, tFar);
 #endif
@@ -74,22 +88,27 @@ void main()
     else if (inFrontOfLayer)
         tFar = tLayer < 1e29 ? min(tFar, tLayer) : tNear;
 #endif
-    if (!(tNear < tFar)) discard;
+    float first = max(tNear, brick.x);
+    if (!(first < min(tFar, brick.y))) discard;
 
     float unitsPerDepth = length(frameToUnits * direction);
     vec3 color = vec3(0.0);
     float transmittance = 1.0;
-    float cell = floor((tNear - latticeOffset) / stepDepth) + 1.0;
-    float t = tNear;
+    float cell = floor((first - latticeOffset) / stepDepth);
+    float t = max(tNear, latticeOffset + cell * stepDepth);
     for (int i = 0; i < maximumSteps && t < tFar; ++i) {
-        float end = min(latticeOffset + cell * stepDepth, tFar);
-        vec4 c = classify(origin + direction * (0.5 * (t + end)));
-        float through = exp2(-c.a * (end - t) * unitsPerDepth);
-        color += transmittance * (1.0 - through) * c.rgb;
-        transmittance *= through;
-        if (transmittance < OPAQUE_ENOUGH) break;
-        t = max(t, end);
         cell += 1.0;
+        float end = min(latticeOffset + cell * stepDepth, tFar);
+        float middle = 0.5 * (t + end);
+        if (middle >= brick.y) break;
+        if (middle >= brick.x) {
+            vec4 c = classify(origin + direction * middle);
+            float through = exp2(-c.a * (end - t) * unitsPerDepth);
+            color += transmittance * (1.0 - through) * c.rgb;
+            transmittance *= through;
+            if (transmittance < OPAQUE_ENOUGH) break;
+        }
+        t = max(t, end);
     }
     fragColor = vec4(color, 1.0 - transmittance);
 }
