@@ -1,5 +1,6 @@
 #include "VoxelSource.h"
 
+#include "core/Text.h"
 #include "core/voxels/VoxelData.h"
 
 #include <cmath>
@@ -10,16 +11,11 @@ namespace osgVolumizer {
 
 namespace {
 
-std::string text(const glm::ivec3& v)
-{
-    return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
-}
-
 Status checkAxis(const VoxelSource::Description& d, int axis)
 {
     if (d.size[axis] < 1)
-        return {ErrorCode::VALUE_INVALID, "volume size " + text(d.size) + " is below 1 on an axis",
-                axis};
+        return {ErrorCode::VALUE_INVALID,
+                "volume size " + core::formatTriple(d.size) + " is below 1 on an axis", axis};
     if (!(d.spacing[axis] > 0.0 && std::isfinite(d.spacing[axis])))
         return {ErrorCode::VALUE_INVALID,
                 "voxel spacing " + std::to_string(d.spacing[axis]) + " is not a positive number",
@@ -64,8 +60,8 @@ Status MemoryVoxelSource::allocate(const Description& description, std::int64_t 
 {
     if (Status status = description.validate(); !status.ok()) return status;
     const std::int64_t bytes = description.sizeInBytes();
-    const std::string what = "a volume of " + text(description.size) + " voxels needs " +
-                             std::to_string(bytes) + " bytes, more than ";
+    const std::string what = "a volume of " + core::formatTriple(description.size) +
+                             " voxels needs " + std::to_string(bytes) + " bytes, more than ";
     if (bytes > maximumBytes)
         return {ErrorCode::TOO_LARGE, what + "the bound of " + std::to_string(maximumBytes)};
     // calloc leaves zeroed pages to the system until they are touched.
@@ -99,8 +95,9 @@ Status MemoryVoxelSource::checkRegion(const core::Box3i& region) const
     for (int axis = 0; axis < 3; ++axis)
         if (region.min[axis] < 0 || region.max[axis] > _description.size[axis])
             return {ErrorCode::INDEX_OUT_OF_RANGE,
-                    "samples " + text(region.min) + " to " + text(region.max) +
-                        " are outside the volume of " + text(_description.size),
+                    "samples " + core::formatTriple(region.min) + " to " +
+                        core::formatTriple(region.max) + " are outside the volume of " +
+                        core::formatTriple(_description.size),
                     axis};
     return {};
 }

@@ -40,12 +40,12 @@ run_fuzz() {
         corpus=build/fuzz/corpus/$(basename "$target")
         mkdir -p "$corpus"
         echo "$(basename "$target") for $FUZZ_SECONDS s"
-        "$target" -max_total_time="$FUZZ_SECONDS" -timeout=10 -rss_limit_mb=2048 -verbosity=0 \
+        "$target" -max_total_time="$FUZZ_SECONDS" -timeout=30 -rss_limit_mb=2048 -verbosity=0 \
             -artifact_prefix="$corpus/" "$corpus" || failures+=("$(basename "$target")")
     done
 }
 
-install_missing $BUILD_PACKAGES libgtest-dev libegl-dev libgl1-mesa-dri openscenegraph xvfb xauth \
+install_missing $BUILD_PACKAGES libgtest-dev libgl1-mesa-dri openscenegraph xvfb xauth \
     clang-format-14 git || exit 1
 
 run_suite release

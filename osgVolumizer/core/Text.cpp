@@ -72,5 +72,15 @@ std::string formatNumber(double value)
     return std::string(buffer, result.ptr);
 }
 
+std::string formatTriple(const glm::ivec3& v)
+{
+    return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
+}
+
+std::string formatTriple(const glm::dvec3& v)
+{
+    return formatNumber(v.x) + "," + formatNumber(v.y) + "," + formatNumber(v.z);
+}
+
 } // namespace core
 } // namespace osgVolumizer

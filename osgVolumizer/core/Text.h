@@ -2,6 +2,8 @@
 
 #include "Export.h"
 
+#include <glm/vec3.hpp>
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -24,6 +26,9 @@ OSGVOLUMIZER_CORE_EXPORT std::vector<std::string_view> splitText(std::string_vie
 OSGVOLUMIZER_CORE_EXPORT std::vector<std::string_view> splitBlanks(std::string_view text);
 /// As few digits as read back to the same number.
 OSGVOLUMIZER_CORE_EXPORT std::string formatNumber(double value);
+/// "x,y,z"
+OSGVOLUMIZER_CORE_EXPORT std::string formatTriple(const glm::ivec3& v);
+OSGVOLUMIZER_CORE_EXPORT std::string formatTriple(const glm::dvec3& v);
 
 } // namespace core
 } // namespace osgVolumizer

@@ -1,8 +1,12 @@
 #include "Accumulation.h"
 
+#include "ScissorScope.h"
 #include "VolumeProgram.h"
 
-#include "../Error.h"
+#include <osg/Depth>
+#include <osgUtil/StateGraph>
+
+#include <algorithm>
 
 namespace osgVolumizer {
 namespace render {
@@ -79,6 +83,7 @@ void ensureDepth(AccumulationBuffers& buffers, int width, int height, GLenum dep
     buffers.depthFormat = depthFormat;
     buffers.opaqueDepth = makeDepth(buffers.width, buffers.height, depthFormat);
     buffers.color = nullptr;
+    buffers.layerDepth = nullptr;
 }
 
 void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorFormat)
@@ -94,6 +99,19 @@ void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorF
     gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.framebuffer);
     gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D, color, 0);
     gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth, 0);
+}
+
+// Clearing the layer buffer needs depth writes.
+osg::ref_ptr<osg::StateSet> accumulationStateSet()
+{
+    static const osg::ref_ptr<osg::StateSet> set = []() {
+        osg::ref_ptr<osg::StateSet> s = new osg::StateSet;
+        s->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true),
+                                osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE |
+                                    osg::StateAttribute::PROTECTED);
+        return s;
+    }();
+    return set;
 }
 
 } // namespace
@@ -151,6 +169,36 @@ void Accumulation::end(osg::RenderInfo& renderInfo)
     state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
+void Accumulation::beginLayer(osg::RenderInfo& renderInfo, const glm::ivec4& area)
+{
+    osg::State& state = *renderInfo.getState();
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    AccumulationBuffers& buffers = resources->accumulation;
+    if (!buffers.layerDepth) {
+        buffers.layerDepth = makeDepth(buffers.width, buffers.height, buffers.depthFormat);
+        const GLuint depth = textureName(state, *buffers.layerDepth);
+        if (!buffers.layerFramebuffer) gl.glGenFramebuffers(1, &buffers.layerFramebuffer);
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.layerFramebuffer);
+        gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth,
+                                  0);
+        glDrawBuffer(GL_NONE);
+        glReadBuffer(GL_NONE);
+    }
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, buffers.layerFramebuffer);
+    const ScissorScope scissor;
+    scissor.set(area);
+    glClear(GL_DEPTH_BUFFER_BIT);
+}
+
+void Accumulation::endLayer(osg::RenderInfo& renderInfo)
+{
+    osg::State& state = *renderInfo.getState();
+    const GLuint target = _redirected ? contextResources(state)->accumulation.framebuffer
+                                      : static_cast<GLuint>(_drawFramebuffer);
+    state.get<osg::GLExtensions>()->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, target);
+}
+
 void Accumulation::writeBack(osg::State& state, AccumulationBuffers& buffers)
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
@@ -161,8 +209,8 @@ void Accumulation::writeBack(osg::State& state, AccumulationBuffers& buffers)
                          s.y + s.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step)
-    : _accumulation(accumulation), _step(step)
+AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step, const glm::ivec4& area)
+    : _accumulation(accumulation), _step(step), _area(area)
 {
     setSupportsDisplayList(false);
     setUseDisplayList(false);
@@ -173,10 +221,21 @@ AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step)
 void AccumulationLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     if (!_accumulation) return;
-    if (_step == BEGIN)
-        _accumulation->begin(renderInfo);
-    else
-        _accumulation->end(renderInfo);
+    switch (_step) {
+    case BEGIN: _accumulation->begin(renderInfo); break;
+    case END: _accumulation->end(renderInfo); break;
+    case BEGIN_LAYER: _accumulation->beginLayer(renderInfo, _area); break;
+    case END_LAYER: _accumulation->endLayer(renderInfo); break;
+    }
+}
+
+osgUtil::RenderLeaf* accumulationLeaf(Accumulation& accumulation, AccumulationLeaf::Step step,
+                                      const osgUtil::RenderLeaf& beside, const glm::ivec4& area)
+{
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
+        new AccumulationLeaf(&accumulation, step, area), beside._projection, beside._modelview);
+    beside._parent->find_or_insert(accumulationStateSet())->addLeaf(leaf);
+    return leaf.get();
 }
 
 } // namespace render

@@ -27,8 +27,9 @@ void release(ContextResources& resources, unsigned contextId)
     if (gl) {
         resources.vertices.release(*gl);
         resources.indices.release(*gl);
-        if (resources.accumulation.framebuffer)
-            gl->glDeleteFramebuffers(1, &resources.accumulation.framebuffer);
+        for (GLuint* name :
+             {&resources.accumulation.framebuffer, &resources.accumulation.layerFramebuffer})
+            if (*name) gl->glDeleteFramebuffers(1, name);
     }
 }
 

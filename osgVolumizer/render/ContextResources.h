@@ -21,14 +21,14 @@ private:
     GLuint _name = 0;
 };
 
-/// The colour and depth that volumes are accumulated in, and a copy of the opaque scene's depth. One a
-/// context, grown to the largest viewport seen.
+/// The colour and depth that volumes are accumulated in, a copy of the opaque scene's depth, and the depth of
+/// the surfaces that split segments. One a context, grown to the largest viewport seen.
 struct AccumulationBuffers
 {
     int width = 0, height = 0;
     GLenum colorFormat = 0, depthFormat = 0;
-    GLuint framebuffer = 0;
-    osg::ref_ptr<osg::Texture2D> color, depth, opaqueDepth;
+    GLuint framebuffer = 0, layerFramebuffer = 0;
+    osg::ref_ptr<osg::Texture2D> color, depth, opaqueDepth, layerDepth;
 };
 
 /// What the renderer keeps per context, made when first needed.

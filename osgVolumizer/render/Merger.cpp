@@ -1,29 +1,25 @@
 #include "Merger.h"
 
-#include "../Error.h"
-#include "Accumulation.h"
 #include "Matrices.h"
-#include "MeshBuilder.h"
+#include "MergeGroups.h"
 #include "Statistics.h"
 
 #include "../core/ordering/BrickOrder.h"
 #include "../core/sampling/ViewHelpers.h"
 
-#include <osg/Depth>
 #include <osgUtil/CullVisitor>
 #include <osgUtil/RenderStage>
-#include <osgUtil/StateGraph>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace osgVolumizer {
 namespace render {
 
 namespace {
-
-using LeafList = osgUtil::RenderBin::RenderLeafList;
 
 // Depth range of the volume in front of the near plane; false where nothing is.
 bool findDepthRange(VolumeInstance& volume, const core::View& view)
@@ -47,9 +43,8 @@ bool findDepthRange(VolumeInstance& volume, const core::View& view)
             farthest = std::max(farthest, depth);
         }
     }
-    volume.nearDepth = std::max(nearest, nearPlane);
-    volume.farDepth = farthest;
-    return volume.nearDepth < volume.farDepth;
+    volume.depth = {std::max(nearest, nearPlane), farthest};
+    return volume.depth.nearDepth < volume.depth.farDepth;
 }
 
 // Puts the bricks in visibility order, far to near.
@@ -69,10 +64,16 @@ void sortBricks(VolumeInstance& volume, const core::View& view)
     for (std::int64_t index : order) volume.bricks.push_back(std::move(byIndex.at(index)));
 }
 
-osg::ref_ptr<osg::StateSet> accumulationStateSet()
+// The first and the last of our leaves, around all others.
+void addAccumulation(Accumulation& accumulation, const osgUtil::RenderLeaf& beside,
+                     const glm::ivec4& viewport, std::vector<OrderedLeaf>& made)
 {
-    static const osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-    return set;
+    const auto byDepth = [](const OrderedLeaf& a, const OrderedLeaf& b) { return a.depth < b.depth; };
+    const auto ends = std::minmax_element(made.begin(), made.end(), byDepth);
+    const double nearest = ends.first->depth, farthest = ends.second->depth;
+    made.insert(made.begin(),
+                {farthest, accumulationLeaf(accumulation, AccumulationLeaf::BEGIN, beside, viewport)});
+    made.push_back({nearest, accumulationLeaf(accumulation, AccumulationLeaf::END, beside, viewport)});
 }
 
 } // namespace
@@ -97,69 +98,75 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
         bin->sortImplementation();
     if (bin->getRenderLeafList().empty()) bin->sortBackToFront();
     LeafList& leaves = bin->getRenderLeafList();
-    findLeaves(leaves);
+    const std::vector<VolumeInstance*> visible = visibleVolumes(leaves);
+    const MergeGroups groups = findMergeGroups(visible, leaves);
 
+    std::unordered_set<const osgUtil::RenderLeaf*> replaced;
+    for (const auto& volume : _volumes) replaced.insert(volume->leaf);
+    for (const MergeGroup& group : groups.groups)
+        for (const ForeignLeaf* surface : group.surfaces) replaced.insert(&surface->leaf());
+
+    FrameCounts counts;
+    const glm::ivec4 viewport(_viewport->x(), _viewport->y(), _viewport->width(),
+                              _viewport->height());
+    const osg::ref_ptr<Accumulation> accumulation = makeAccumulation();
+    std::vector<OrderedLeaf> made;
+    for (const MergeGroup& group : groups.groups)
+        GroupComposer(group, viewport, *accumulation, counts).compose(made);
+    for (const VolumeInstance* volume : visible)
+        counts.bricksDrawn += static_cast<double>(volume->bricks.size());
+    if (!made.empty()) addAccumulation(*accumulation, *visible.front()->leaf, viewport, made);
+
+    std::vector<OrderedLeaf> all;
+    for (osgUtil::RenderLeaf* leaf : leaves)
+        if (!replaced.count(leaf)) all.push_back({leaf->_depth, leaf});
+    all.insert(all.end(), made.begin(), made.end());
+    std::stable_sort(all.begin(), all.end(), [](const OrderedLeaf& a, const OrderedLeaf& b) {
+        return a.depth > b.depth;
+    });
+    leaves.clear();
+    for (const OrderedLeaf& leaf : all) leaves.push_back(leaf.leaf);
+    report(counts);
+}
+
+std::vector<VolumeInstance*> Merger::visibleVolumes(const LeafList& leaves) const
+{
+    std::unordered_map<const osg::Drawable*, osgUtil::RenderLeaf*> byDrawable;
+    for (osgUtil::RenderLeaf* leaf : leaves) byDrawable.emplace(leaf->getDrawable(), leaf);
+    std::vector<VolumeInstance*> result;
     for (const auto& volume : _volumes) {
-        if (!volume->leaf) continue;
+        const auto found = byDrawable.find(volume->drawable.get());
+        if (found == byDrawable.end()) continue;
+        volume->leaf = found->second;
         const core::View view{toGlm(*volume->leaf->_modelview), toGlm(*volume->leaf->_projection)};
         if (!findDepthRange(*volume, view)) continue;
         sortBricks(*volume, view);
-        auto look = std::make_shared<VolumeLook>(*volume->look);
-        std::shared_ptr<const VolumeMesh> mesh;
-        if (look->features.slab) {
-            mesh = slabMesh(*volume, view, {{volume->nearDepth, volume->farDepth}});
-        } else {
-            auto slices = sliceMesh(*volume, view, look->step, look->surfaceNormal);
-            if (!slices) {
-                reportError(slices.status);
-                continue;
-            }
-            mesh = *slices;
-            count(_camera, _frameStamp, "osgVolumizer polygonizations", 1.0);
-        }
-        count(_camera, _frameStamp, "osgVolumizer faces", mesh->faceCount);
-        count(_camera, _frameStamp, "osgVolumizer polygons",
-              static_cast<double>(mesh->indices.size() / 3));
-        count(_camera, _frameStamp, "osgVolumizer bricks drawn",
-              static_cast<double>(volume->bricks.size()));
-        volume->drawable->set(std::move(mesh), std::move(look));
+        result.push_back(volume.get());
     }
-    insertAccumulation(leaves);
+    return result;
 }
 
-void Merger::findLeaves(const LeafList& leaves)
+osg::ref_ptr<Accumulation> Merger::makeAccumulation() const
 {
-    for (osgUtil::RenderLeaf* leaf : leaves) {
-        for (const auto& volume : _volumes)
-            if (leaf->getDrawable() == volume->drawable) volume->leaf = leaf;
-    }
-}
-
-void Merger::insertAccumulation(LeafList& leaves)
-{
-    const auto isVolume = [](const osgUtil::RenderLeaf* leaf) {
-        const auto* drawable = dynamic_cast<const VolumeDrawable*>(leaf->getDrawable());
-        return drawable && drawable->mesh();
-    };
-    const auto first = std::find_if(leaves.begin(), leaves.end(), isVolume);
-    if (first == leaves.end()) return;
-    const auto last = std::find_if(leaves.rbegin(), leaves.rend(), isVolume).base();
     AccumulationSettings settings;
     settings.x = static_cast<int>(_viewport->x());
     settings.y = static_cast<int>(_viewport->y());
     settings.width = static_cast<int>(_viewport->width());
     settings.height = static_cast<int>(_viewport->height());
-    const osg::ref_ptr<Accumulation> accumulation = new Accumulation(settings);
-    const auto makeLeaf = [&](const osgUtil::RenderLeaf& beside, AccumulationLeaf::Step step) {
-        osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
-            new AccumulationLeaf(accumulation, step), beside._projection, beside._modelview);
-        beside._parent->find_or_insert(accumulationStateSet())->addLeaf(leaf);
-        return leaf.get();
-    };
-    osgUtil::RenderLeaf* begin = makeLeaf(**first, AccumulationLeaf::BEGIN);
-    osgUtil::RenderLeaf* end = makeLeaf(**first, AccumulationLeaf::END);
-    leaves.insert(last, end);
-    leaves.insert(std::find_if(leaves.begin(), leaves.end(), isVolume), begin);
+    return new Accumulation(settings);
+}
+
+void Merger::report(const FrameCounts& counts) const
+{
+    const std::pair<const char*, double> values[] = {
+        {"osgVolumizer faces", counts.faces},
+        {"osgVolumizer polygons", counts.polygons},
+        {"osgVolumizer polygonizations", counts.polygonizations},
+        {"osgVolumizer bricks drawn", counts.bricksDrawn},
+        {"osgVolumizer volume leaves", counts.volumeLeaves},
+        {"osgVolumizer surface pieces", counts.surfacePieces},
+        {"osgVolumizer intervals", counts.intervals}};
+    for (const auto& value : values) count(_camera, _frameStamp, value.first, value.second);
 }
 
 } // namespace render

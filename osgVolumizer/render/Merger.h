@@ -1,6 +1,6 @@
 #pragma once
 
-#include "VolumeInstance.h"
+#include "GroupComposer.h"
 
 #include <osg/Camera>
 #include <osg/FrameStamp>
@@ -26,12 +26,14 @@ public:
     static Merger* of(osgUtil::RenderBin& bin, osgUtil::CullVisitor& visitor);
 
     void add(std::unique_ptr<VolumeInstance> volume) { _volumes.push_back(std::move(volume)); }
-
     void sortImplementation(osgUtil::RenderBin* bin) override;
 
 private:
-    void findLeaves(const osgUtil::RenderBin::RenderLeafList& leaves);
-    void insertAccumulation(osgUtil::RenderBin::RenderLeafList& leaves);
+    using LeafList = osgUtil::RenderBin::RenderLeafList;
+
+    std::vector<VolumeInstance*> visibleVolumes(const LeafList& leaves) const;
+    osg::ref_ptr<Accumulation> makeAccumulation() const;
+    void report(const FrameCounts& counts) const;
 
     std::vector<std::unique_ptr<VolumeInstance>> _volumes;
     osg::ref_ptr<osgUtil::RenderBin::SortCallback> _chained;

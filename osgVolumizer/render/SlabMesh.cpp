@@ -5,6 +5,10 @@
 
 #include <glm/gtc/matrix_access.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -32,9 +36,11 @@ public:
     {
         _mesh->stride = SLAB_STRIDE;
         _mesh->slabOffset = 3;
+        const Result<core::NearFar> planes = core::nearFar(view.projection);
+        if (planes) _nearPlane = planes->nearDepth + 1e-5 * std::abs(planes->nearDepth);
     }
 
-    void append(const DepthInterval& interval)
+    void append(const core::DepthInterval& interval)
     {
         for (const SelectedBrick& brick : _volume.bricks) appendBrick(brick, interval);
     }
@@ -42,9 +48,9 @@ public:
 
 private:
     // Depths of a box, to leave out the bricks and the cuts that an interval does not need.
-    DepthInterval depthsOf(const core::Box3d& box) const
+    core::DepthInterval depthsOf(const core::Box3d& box) const
     {
-        DepthInterval r{std::numeric_limits<double>::infinity(),
+        core::DepthInterval r{std::numeric_limits<double>::infinity(),
                         -std::numeric_limits<double>::infinity()};
         for (int i = 0; i < 8; ++i) {
             const double d = depthPlane(_view.toEye, 0.0).distance(box.corner(i));
@@ -54,14 +60,14 @@ private:
         return r;
     }
 
-    void appendBrick(const SelectedBrick& brick, const DepthInterval& interval)
+    void appendBrick(const SelectedBrick& brick, const core::DepthInterval& interval)
     {
-        const DepthInterval depths = depthsOf(brick.box);
+        const core::DepthInterval depths = depthsOf(brick.box);
         if (depths.farDepth <= interval.nearDepth || depths.nearDepth >= interval.farDepth) return;
         _polytope.setBox(brick.box);
         for (const core::Plane& plane : _volume.prepared->obliquePlanes) _polytope.clip(plane, CUT);
-        // A little beyond, so that the cap on the near plane itself is not cut off by GL.
-        const double nearest = interval.nearDepth + 1e-5 * std::abs(interval.nearDepth);
+        // A little beyond the near plane, so that the cap on it is not cut off by GL.
+        const double nearest = std::max(interval.nearDepth, _nearPlane);
         if (depths.nearDepth < nearest) _polytope.clip(depthPlane(_view.toEye, nearest), CUT);
         if (depths.farDepth > interval.farDepth)
             _polytope.clip(flipped(depthPlane(_view.toEye, interval.farDepth)), CUT);
@@ -87,7 +93,7 @@ private:
         return glm::dot(_polytope.faceNormal(face), glm::dvec3(_eye) - v * _eye.w) > 0.0;
     }
 
-    void appendFaces(const DepthInterval& interval)
+    void appendFaces(const core::DepthInterval& interval)
     {
         const double reference = _volume.look->referenceDepth;
         for (std::size_t f = 0; f < _polytope.faceCount(); ++f) {
@@ -110,6 +116,7 @@ private:
     const VolumeInstance& _volume;
     const core::View& _view;
     const glm::dvec4 _eye;
+    double _nearPlane = -std::numeric_limits<double>::infinity();
     core::ConvexPolytope _polytope;
     std::shared_ptr<VolumeMesh> _mesh;
 };
@@ -117,12 +124,12 @@ private:
 } // namespace
 
 std::shared_ptr<const VolumeMesh> slabMesh(const VolumeInstance& volume, const core::View& view,
-                                           const std::vector<DepthInterval>& farToNear)
+                                           const std::vector<core::DepthInterval>& farToNear)
 {
     const Result<glm::dvec4> eye = core::eyePosition(view);
     if (!eye) return std::make_shared<VolumeMesh>();
     SlabMeshBuilder builder(volume, view, *eye);
-    for (const DepthInterval& interval : farToNear) builder.append(interval);
+    for (const core::DepthInterval& interval : farToNear) builder.append(interval);
     return builder.take();
 }
 

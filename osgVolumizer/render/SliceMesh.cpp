@@ -2,6 +2,8 @@
 
 #include <glm/gtc/matrix_access.hpp>
 
+#include <algorithm>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -64,29 +66,50 @@ std::vector<core::Box3d> clipBoxesOf(const VolumeInstance& volume)
 
 } // namespace
 
-Result<std::shared_ptr<const VolumeMesh>> sliceMesh(const VolumeInstance& volume,
-                                                    const core::View& view, double& spacing,
-                                                    glm::dvec3& surfaceNormal)
+Status SlicedVolume::polygonize(const VolumeInstance& volume, const core::View& view,
+                                bool viewAligned)
 {
     core::SamplingParameters sampling = volume.sampling;
     // Without one affine map there are no planes along a voxel axis.
-    if (sampling.mode == SamplingMode::AXIS_ALIGNED && !volume.prepared->voxelFrame &&
-        volume.look->features.voxels)
-        sampling.mode = SamplingMode::VIEWPORT_ALIGNED;
-    core::PolygonizedFaces slices;
+    const bool noAxis = sampling.mode == SamplingMode::AXIS_ALIGNED &&
+                        !volume.prepared->voxelFrame && volume.look->features.voxels;
+    if (viewAligned || noAxis) sampling.mode = SamplingMode::VIEWPORT_ALIGNED;
+    _spherical = sampling.mode == SamplingMode::SPHERICAL;
     const Status status = core::polygonize(volume.prepared->tetras, clipBoxesOf(volume), view,
-                                           sampling, slices);
+                                           sampling, _slices);
     if (!status) return status;
-    spacing = slices.spacing;
-    surfaceNormal = glm::dvec3(0.0);
-    if (slices.axis >= 0)
-        surfaceNormal[slices.axis] = 1.0;
+    _surfaceNormal = glm::dvec3(0.0);
+    if (_slices.axis >= 0)
+        _surfaceNormal[_slices.axis] = 1.0;
     else
-        surfaceNormal = -glm::dvec3(glm::row(view.toEye, 2));
+        _surfaceNormal = -glm::dvec3(glm::row(view.toEye, 2));
+    return status;
+}
 
-    const core::VertexFormat& format = slices.faces.format;
+std::shared_ptr<const VolumeMesh> SlicedVolume::mesh(const VolumeInstance& volume) const
+{
+    return makeMesh(volume, 0, _slices.surfaceCount);
+}
+
+std::shared_ptr<const VolumeMesh> SlicedVolume::mesh(const VolumeInstance& volume,
+                                                     const core::DepthInterval& interval) const
+{
+    // Depths fall with the number of the surface.
+    const auto& depths = _slices.surfaceDepths;
+    const auto notBefore = [&depths](double depth) {
+        return static_cast<int>(std::partition_point(depths.begin(), depths.end(),
+                                                     [depth](double d) { return d >= depth; }) -
+                                depths.begin());
+    };
+    return makeMesh(volume, notBefore(interval.farDepth), notBefore(interval.nearDepth));
+}
+
+std::shared_ptr<const VolumeMesh> SlicedVolume::makeMesh(const VolumeInstance& volume,
+                                                         int firstSurface, int lastSurface) const
+{
+    const core::VertexFormat& format = _slices.faces.format;
     auto mesh = std::make_shared<VolumeMesh>();
-    const bool ownSpacing = !slices.faceSpacings.empty();
+    const bool ownSpacing = !_slices.faceSpacings.empty();
     mesh->stride = format.stride() + (ownSpacing ? 1 : 0);
     mesh->positionOffset = format.positionOffset();
     if (format.voxelCoordinateSize) mesh->voxelCoordinateOffset = format.voxelCoordinateOffset();
@@ -95,17 +118,20 @@ Result<std::shared_ptr<const VolumeMesh>> sliceMesh(const VolumeInstance& volume
     if (ownSpacing) mesh->spacingOffset = format.stride();
     // Bricks of one affine map have an order of their own, so that each is bound once; of a deformed
     // volume only the surfaces have.
-    const bool brickByBrick = volume.prepared->voxelFrame || slices.brickCount == 1;
-    const int outer = brickByBrick ? slices.brickCount : slices.surfaceCount;
-    const int inner = brickByBrick ? slices.surfaceCount : slices.brickCount;
+    const int surfaces = lastSurface - firstSurface;
+    const bool brickByBrick = volume.prepared->voxelFrame || _slices.brickCount == 1;
+    const int outer = brickByBrick ? _slices.brickCount : surfaces;
+    const int inner = brickByBrick ? surfaces : _slices.brickCount;
     for (int i = 0; i < outer; ++i) {
         for (int j = 0; j < inner; ++j) {
-            const int brick = brickByBrick ? i : j, surface = brickByBrick ? j : i;
-            appendRange(volume, slices, surface, brick, j == 0 || !brickByBrick, *mesh);
+            const int brick = brickByBrick ? i : j;
+            const int surface = firstSurface + (brickByBrick ? j : i);
+            appendRange(volume, _slices, surface, brick, j == 0 || !brickByBrick, *mesh);
         }
     }
-    if (!ownSpacing) mesh->vertices = std::move(slices.faces.vertices);
-    return std::shared_ptr<const VolumeMesh>(std::move(mesh));
+    while (!mesh->batches.empty() && mesh->batches.back().indexCount == 0) mesh->batches.pop_back();
+    if (!ownSpacing) mesh->vertices = _slices.faces.vertices;
+    return mesh;
 }
 
 } // namespace render

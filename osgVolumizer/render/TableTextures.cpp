@@ -11,14 +11,18 @@ namespace render {
 
 namespace {
 
+// Of one unit's opacity; a ray through hundreds of units sums it up to what 8 bits cannot show.
+constexpr double TEXEL_TOLERANCE = 1e-7;
+
 TableTexture makeTable(const LookupTable& table, const osg::Vec2d& range)
 {
     static std::atomic<unsigned> nextId{1};
     TableTexture result;
     result.function = table.getNormalizedFunction(range);
     result.id = nextId++;
-    const int count =
-        core::chooseTexelCount(*result.function, 0.0, 1.0, core::TexelPlaces::ENDS).count;
+    const int count = core::chooseTexelCount(*result.function, 0.0, 1.0, core::TexelPlaces::ENDS,
+                                             TEXEL_TOLERANCE)
+                          .count;
     std::vector<glm::vec4> texels = result.function->tabulateExtinction(count, 0.0, 1.0, false);
     for (glm::vec4& t : texels) t.a *= static_cast<float>(1.0 / std::log(2.0));
     result.fractionToCoordinate = {(count - 1.0) / count, 0.5 / count};

@@ -4,6 +4,7 @@
 #include "ContextResources.h"
 #include "Matrices.h"
 #include "PixelRays.h"
+#include "ScissorScope.h"
 #include "Statistics.h"
 
 #include <osg/Program>
@@ -79,6 +80,9 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
     if (look.features.slab) {
         uniforms.set("stepDepth", static_cast<float>(look.step));
         uniforms.set("maximumSteps", look.maximumSteps);
+        uniforms.set("latticeOffset", static_cast<float>(look.latticeOffset));
+        if (look.features.layerDepth)
+            uniforms.set("inFrontOfLayer", look.inFrontOfLayer ? 1 : 0);
         uniforms.set("planes", look.planes);
     } else {
         uniforms.set("surfaceNormal", glm::vec3(look.surfaceNormal));
@@ -86,14 +90,14 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
     }
 }
 
-void setOpaqueDepth(osg::State& state, const Uniforms& uniforms, const PixelRays& rays,
-                    AccumulationBuffers& buffers)
+void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRays& rays,
+                      const ProgramFeatures& features, const AccumulationBuffers& buffers)
 {
     if (!buffers.opaqueDepth) return;
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
-    uniforms.set("opaqueDepthScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
-                                               1.0f / static_cast<float>(buffers.height)));
-    uniforms.set("opaqueDepthOffset", glm::vec2(0.0f));
+    if (features.layerDepth) state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.layerDepth.get());
+    uniforms.set("depthTextureScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
+                                                1.0f / static_cast<float>(buffers.height)));
     uniforms.set("clipZOrigin", glm::vec3(rays.clipZOrigin));
     uniforms.set("clipZDirection", glm::vec3(rays.clipZDirection));
     uniforms.set("clipWOrigin", glm::vec3(rays.clipWOrigin));
@@ -201,16 +205,25 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     uniforms.set("frameToClip", projection * toEye);
     setLook(uniforms, *_look, *rays);
     if (_look->features.opaqueDepth)
-        setOpaqueDepth(state, uniforms, *rays, resources->accumulation);
+        setDepthTextures(state, uniforms, *rays, _look->features, resources->accumulation);
     if (_look->table) state.applyTextureAttribute(UNIT_TABLE, _look->table.get());
     {
         const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
-        for (const BrickBatch& batch : _mesh->batches) drawBatch(renderInfo, uniforms, batch);
+        const auto drawBatches = [&]() {
+            for (const BrickBatch& batch : _mesh->batches) drawBatch(renderInfo, uniforms, batch);
+        };
+        if (_look->scissors.empty()) {
+            drawBatches();
+        } else {
+            const ScissorScope scissor;
+            for (const glm::ivec4& rectangle : _look->scissors)
+                if (scissor.set(rectangle)) drawBatches();
+        }
     }
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
     // OSG compares attributes by address: make it bind its own again whatever ours were.
-    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH})
+    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH, UNIT_LAYER_DEPTH})
         state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }
 

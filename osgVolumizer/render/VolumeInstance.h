@@ -7,6 +7,7 @@
 
 #include "../VolumeAppearance.h"
 #include "../VolumeGeometry.h"
+#include "../core/ordering/DepthSchedule.h"
 
 #include <osgUtil/RenderLeaf>
 
@@ -38,7 +39,7 @@ struct VolumeInstance
 
     // Known once sorting begins:
     osgUtil::RenderLeaf* leaf = nullptr;
-    double nearDepth = 0.0, farDepth = 0.0; ///< eye units, in front of the near plane
+    core::DepthInterval depth; ///< in front of the near plane
 };
 
 } // namespace render

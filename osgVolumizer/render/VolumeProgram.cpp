@@ -27,6 +27,7 @@ std::string header(const ProgramFeatures& features)
     define(features.voxels, "VOXELS");
     define(features.rgba, "RGBA");
     define(features.opaqueDepth, "OPAQUE_DEPTH");
+    define(features.layerDepth, "LAYER_DEPTH");
     define(features.spherical, "SPHERICAL");
     text += "#define PLANES " + std::to_string(features.planeCount) + "\n";
     return text;
@@ -64,6 +65,7 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->addUniform(new osg::Uniform("voxels", int(UNIT_VOXELS)));
     set->addUniform(new osg::Uniform("lookupTable", int(UNIT_TABLE)));
     set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
+    set->addUniform(new osg::Uniform("layerDepth", int(UNIT_LAYER_DEPTH)));
     set->setRenderBinDetails(10, "DepthSortedBin");
     set->setNestRenderBins(false);
     return set;

@@ -14,6 +14,7 @@ struct ProgramFeatures
     bool voxels = true;  ///< a brick texture
     bool rgba = false;   ///< voxels are colours, not values to look up
     bool opaqueDepth = false;
+    bool layerDepth = false; ///< surfaces split the segment; expects opaqueDepth
     bool spherical = false; ///< slices are spheres about the eye
     int planeCount = 0;  ///< half-spaces that end the segment, besides the clip box
 
@@ -21,12 +22,12 @@ struct ProgramFeatures
     {
         return unsigned(slab) | unsigned(voxelCoordinates) << 1 | unsigned(vertexColors) << 2 |
                unsigned(voxels) << 3 | unsigned(rgba) << 4 | unsigned(opaqueDepth) << 5 |
-               unsigned(spherical) << 6 | unsigned(planeCount) << 8;
+               unsigned(spherical) << 6 | unsigned(layerDepth) << 7 | unsigned(planeCount) << 8;
     }
 };
 
 /// Texture units of the samplers.
-enum TextureUnit : unsigned { UNIT_VOXELS = 0, UNIT_TABLE = 1, UNIT_OPAQUE_DEPTH = 2 };
+enum TextureUnit : unsigned { UNIT_VOXELS = 0, UNIT_TABLE = 1, UNIT_OPAQUE_DEPTH = 2, UNIT_LAYER_DEPTH = 3 };
 /// Vertex attributes.
 enum Attribute : unsigned {
     ATTRIBUTE_POSITION,

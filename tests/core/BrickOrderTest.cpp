@@ -31,7 +31,8 @@ void expectOrder(const glm::dvec4& eye, const glm::dvec3& start, const glm::dvec
                  const std::vector<std::int64_t>& sorted)
 {
     std::map<std::int64_t, int> place;
-    for (std::size_t i = 0; i < sorted.size(); ++i) place[sorted[i]] = static_cast<int>(i);
+    for (std::size_t i = 0; i < sorted.size(); ++i)
+        place[sorted[i]] = static_cast<int>(i);
     int last = static_cast<int>(sorted.size());
     for (double t = 0.0; t < 60.0; t += 0.013) {
         const glm::dvec3 p = start + t * direction;

@@ -1,5 +1,5 @@
-#include "TestGeometry.h"
 #include "osgVolumizer/core/geometry/ConvexRegion.h"
+#include "TestGeometry.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ TEST(ConvexPolytope, BoxHasItsVolumeAndOutwardFaces)
     p.setBox({{1, 2, 3}, {4, 6, 9}});
     EXPECT_DOUBLE_EQ(p.volume(), 72.0);
     for (std::size_t f = 0; f < 6; ++f) {
-        const double outwards = glm::dot(
-            p.faceNormal(f), p.vertices[p.indices[p.faceOffsets[f]]] - glm::dvec3(2.5, 4.0, 6.0));
+        const double outwards = glm::dot(p.faceNormal(f), p.vertices[p.indices[p.faceOffsets[f]]] -
+                                                              glm::dvec3(2.5, 4.0, 6.0));
         EXPECT_GT(outwards, 0.0);
         EXPECT_EQ(p.faceTags[f], static_cast<int>(f));
     }
@@ -33,7 +33,8 @@ TEST(ConvexPolytope, TwoSidesOfRandomPlanesAddUp)
     for (int round = 0; round < 200; ++round) {
         whole.setBox({glm::dvec3(-1.0), glm::dvec3(1.0)});
         for (int i = 0; i < 12 && !whole.empty(); ++i) {
-            Plane plane{glm::normalize(glm::dvec3(u(random), u(random), u(random))), 0.7 * u(random)};
+            Plane plane{glm::normalize(glm::dvec3(u(random), u(random), u(random))),
+                        0.7 * u(random)};
             // Planes through vertices, edges and faces as well.
             if (i % 3 == 1) plane.offset = -glm::dot(plane.normal, whole.vertices[0]);
             if (i % 3 == 2) plane.normal = {0, 0, 1};
@@ -45,7 +46,8 @@ TEST(ConvexPolytope, TwoSidesOfRandomPlanesAddUp)
             whole.assign(a.volume() > b.volume() ? a : b);
             // Closed: the face normals add up to nothing, and Euler's formula holds.
             glm::dvec3 sum(0.0);
-            for (std::size_t f = 0; f < whole.faceCount(); ++f) sum += whole.faceNormal(f);
+            for (std::size_t f = 0; f < whole.faceCount(); ++f)
+                sum += whole.faceNormal(f);
             ASSERT_NEAR(glm::length(sum), 0.0, 1e-12);
             ASSERT_EQ(whole.vertices.size() - whole.indices.size() / 2 + whole.faceCount(), 2u);
         }

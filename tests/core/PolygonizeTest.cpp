@@ -1,5 +1,5 @@
-#include "TestGeometry.h"
 #include "osgVolumizer/core/sampling/Polygonize.h"
+#include "TestGeometry.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using namespace osgVolumizer::testing;
-
 
 TEST(Polygonize, HeadOnGivesNumberOfVoxelsOverPeriod)
 {

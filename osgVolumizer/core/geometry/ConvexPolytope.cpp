@@ -29,7 +29,8 @@ void ConvexPolytope::setBox(const Box3d& box)
     if (!(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z)) return;
     static constexpr std::uint32_t faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                                   {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    for (int i = 0; i < 8; ++i) vertices.push_back(box.corner(i));
+    for (int i = 0; i < 8; ++i)
+        vertices.push_back(box.corner(i));
     for (int f = 0; f < 6; ++f) {
         indices.insert(indices.end(), faces[f], faces[f] + 4);
         faceOffsets.push_back(static_cast<std::uint32_t>(indices.size()));
@@ -108,7 +109,8 @@ void ConvexPolytope::closeWith(int tag)
 void ConvexPolytope::compact()
 {
     _next.assign(vertices.size(), NONE);
-    for (const std::uint32_t i : indices) _next[i] = 0;
+    for (const std::uint32_t i : indices)
+        _next[i] = 0;
     std::uint32_t used = 0;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         if (_next[i] == NONE) continue;
@@ -116,7 +118,8 @@ void ConvexPolytope::compact()
         _next[i] = used++;
     }
     vertices.resize(used);
-    for (std::uint32_t& i : indices) i = _next[i];
+    for (std::uint32_t& i : indices)
+        i = _next[i];
 }
 
 void ConvexPolytope::clip(const Plane& plane, int tag)
@@ -142,7 +145,8 @@ void ConvexPolytope::clip(const Plane& plane, int tag)
     _offsets.assign(1, 0);
     _tags.clear();
     _next.clear();
-    for (std::size_t f = 0; f < faceCount(); ++f) clipFace(f);
+    for (std::size_t f = 0; f < faceCount(); ++f)
+        clipFace(f);
     closeWith(tag);
     indices.swap(_indices);
     faceOffsets.swap(_offsets);

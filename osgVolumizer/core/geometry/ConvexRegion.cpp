@@ -63,11 +63,12 @@ std::vector<Face> inwardFaces(const TetraSet& set, double& volume)
     faces.reserve(set.indices.size());
     for (std::size_t i = 0; i < set.indices.size(); i += 4) {
         std::uint32_t t[4];
-        for (std::size_t k = 0; k < 4; ++k) t[k] = merged[set.indices[i + k]];
+        for (std::size_t k = 0; k < 4; ++k)
+            t[k] = merged[set.indices[i + k]];
         const glm::dvec3 a = set.vertices.position(t[0]);
-        const double six = glm::dot(
-            glm::cross(set.vertices.position(t[1]) - a, set.vertices.position(t[2]) - a),
-            set.vertices.position(t[3]) - a);
+        const double six =
+            glm::dot(glm::cross(set.vertices.position(t[1]) - a, set.vertices.position(t[2]) - a),
+                     set.vertices.position(t[3]) - a);
         if (six == 0.0) continue;
         volume += std::abs(six) / 6.0;
         if (six < 0.0) std::swap(t[0], t[1]);
@@ -88,7 +89,8 @@ bool keepBoundary(std::vector<Face>& faces)
     std::vector<Face> boundary;
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t j = i + 1;
-        while (j < faces.size() && faces[j].sorted == faces[i].sorted) ++j;
+        while (j < faces.size() && faces[j].sorted == faces[i].sorted)
+            ++j;
         if (j - i > 2 || (j - i == 2 && faces[i].odd == faces[i + 1].odd)) return false;
         if (j - i == 1) boundary.push_back(faces[i]);
         i = j;
@@ -144,7 +146,8 @@ std::optional<ConvexRegion> convexRegion(const TetraSet& set)
     hull.setBox({-half, half});
     clipPolytope(hull, region, 6);
     if (!(std::abs(hull.volume() - volume) <= 1e-6 * volume)) return std::nullopt;
-    for (Plane& p : region.planes) p.offset -= glm::dot(p.normal, center);
+    for (Plane& p : region.planes)
+        p.offset -= glm::dot(p.normal, center);
     return region;
 }
 

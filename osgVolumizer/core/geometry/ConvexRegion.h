@@ -29,8 +29,8 @@ struct ConvexRegion
 /// The union of the tetrahedra, if it is one convex polytope that they fill without gap or overlap;
 /// else nothing. Expects a valid set. Proof: faces that two tetrahedra share from opposite sides
 /// cancel; if every other face lies in a plane that has the whole set on one side, the boundary of
-/// the set lies on its convex hull, so points inside the hull are all covered equally often, and the
-/// volumes tell whether that is once. Lengths are compared to 1e-9 of the bounds' diagonal.
+/// the set lies on its convex hull, so points inside the hull are all covered equally often, and
+/// the volumes tell whether that is once. Lengths are compared to 1e-9 of the bounds' diagonal.
 /// Tetrahedra without volume are ignored; coplanar faces are merged.
 OSGVOLUMIZER_CORE_EXPORT std::optional<ConvexRegion> convexRegion(const TetraSet& tetraSet);
 

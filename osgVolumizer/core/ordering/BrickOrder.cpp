@@ -23,7 +23,8 @@ BrickOrder::BrickOrder(const BrickLayout& layout)
 glm::ivec3 BrickOrder::count() const
 {
     glm::ivec3 n;
-    for (int a = 0; a < 3; ++a) n[a] = std::max<int>(1, static_cast<int>(_splits[a].size())) - 1;
+    for (int a = 0; a < 3; ++a)
+        n[a] = std::max<int>(1, static_cast<int>(_splits[a].size())) - 1;
     return n;
 }
 
@@ -37,8 +38,8 @@ void BrickOrder::sort(const glm::dvec4& eyeVoxel, std::vector<std::int64_t>& bri
             continue;
         }
         const double eye = eyeVoxel[a] / eyeVoxel.w;
-        cell[a] = std::upper_bound(_splits[a].begin(), _splits[a].end(), eye) -
-                  _splits[a].begin() - 1;
+        cell[a] =
+            std::upper_bound(_splits[a].begin(), _splits[a].end(), eye) - _splits[a].begin() - 1;
     }
     const auto distance = [&](std::int64_t brick) {
         const std::int64_t x = std::abs(brick % n.x - cell[0]);

@@ -15,6 +15,7 @@
 namespace osgVolumizer {
 namespace core {
 
+class Executor;
 class SurfaceFamily;
 
 /// A run of faces, and the indices that they use.
@@ -75,9 +76,12 @@ public:
     /// In the voxel frame: applied to the explicit voxel coordinates where the format has them,
     /// else to the positions. None means one brick without clipping. On failure the old ones stay.
     Status setClipBoxes(const std::vector<Box3d>& clipBoxes);
+    /// Threads to share the work with; null (default) means the calling thread alone. The faces are
+    /// the same to the bit whatever the number of threads. Kept by reference.
+    void setExecutor(Executor* executor);
 
     /// Expects a tetra set. `out` is unchanged on failure. VALUE_INVALID for parameters (see
-    /// SamplingParameters::validate), SINGULAR_MATRIX, TOO_LARGE for more than 2^26 pairs of
+    /// SamplingParameters::validate), SINGULAR_MATRIX, TOO_LARGE for more than 2^24 pairs of
     /// surface and brick or 2^32 vertices.
     ///
     /// OBJECT spreads the surfaces over the depths of the set, at the middles of equal layers, so
@@ -92,6 +96,14 @@ public:
     /// used.
     Status polygonize(const SurfaceFamily& family, const SamplingParameters& parameters,
                       PolygonizedFaces& out);
+
+    /// Multi-planar reformatting: the cross section with one plane of the position frame, per brick.
+    /// Faces run counter-clockwise about the plane's normal.
+    Status polygonizeMPR(const Plane& plane, const glm::dvec3& outputOrigin, PolygonizedFaces& out);
+    /// The cross section with a polygon: simple, planar to 1e-6 of its size, convex or not, in the
+    /// position frame. VALUE_INVALID for any other.
+    Status polygonizeMPR(const std::vector<glm::dvec3>& polygon, const glm::dvec3& outputOrigin,
+                         PolygonizedFaces& out);
 
 private:
     struct Private;

@@ -105,7 +105,7 @@ Status Refiner::refine(const TetraSet& in, const Box3d& bounds, const Function& 
                 if (out.tetraCount() > MAX_TETRAHEDRA)
                     return {ErrorCode::TOO_LARGE,
                             "polygonize: the tolerance of " + std::to_string(tolerance) +
-                                " of a layer needs more than 2^24 tetrahedra.",
+                                " of a layer needs more than 2^20 tetrahedra.",
                             static_cast<std::int64_t>(i / 4)};
                 continue;
             }

@@ -20,7 +20,7 @@ class Refiner
 public:
     /// Splits no edge shorter than this part of the bounds' diagonal, and makes no more tetrahedra.
     static constexpr double SHORTEST_EDGE = 1.0 / 4096.0;
-    static constexpr std::size_t MAX_TETRAHEDRA = std::size_t(1) << 24;
+    static constexpr std::size_t MAX_TETRAHEDRA = std::size_t(1) << 20;
 
     /// \param value function of (position, voxel coordinate), each three doubles
     /// \param values receives the function at the vertices of `out`

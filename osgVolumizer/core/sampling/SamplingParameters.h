@@ -40,12 +40,16 @@ struct OSGVOLUMIZER_CORE_EXPORT SamplingParameters
     /// SPHERICAL and other curved families: how far a face may lie from its surface, in multiples
     /// of the distance between surfaces.
     double curvedTolerance = 0.1;
+    /// Leave out groups of tetrahedra that lie wholly outside the sides of the view volume, or behind the
+    /// eye. Surfaces stay where they are.
+    bool cullToView = false;
 
     bool operator==(const SamplingParameters& o) const
     {
         return mode == o.mode && space == o.space && periodVoxel == o.periodVoxel &&
                maximumSamples == o.maximumSamples && voxelSize == o.voxelSize &&
-               outputOrigin == o.outputOrigin && curvedTolerance == o.curvedTolerance;
+               outputOrigin == o.outputOrigin && curvedTolerance == o.curvedTolerance &&
+               cullToView == o.cullToView;
     }
     /// Refuses (VALUE_INVALID) what is not finite, periods, sizes and tolerances <= 0, a bound < 1,
     /// and unknown enums.

@@ -50,6 +50,9 @@ constexpr std::array<TetraCase, 16> makeTetraCases()
             setCorner(near, k, opposite[i][k], i);
             setCorner(far, 2 - k, i, opposite[i][k]);
         }
+        // The third corner once more, so that four can be computed without a branch.
+        setCorner(near, 3, opposite[i][2], i);
+        setCorner(far, 3, i, opposite[i][0]);
     }
     for (const auto& p : pairs) {
         TetraCase& c = table[(1u << p[2]) | (1u << p[3])];

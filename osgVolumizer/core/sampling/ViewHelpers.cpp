@@ -62,7 +62,7 @@ double largest(const glm::dvec4& v)
 bool isSingular(const glm::dmat3& m)
 {
     // The negated test also catches NaN.
-    return !(std::max(relativeVolume(m), relativeVolume(glm::transpose(m))) > SINGULAR);
+    return !(relativeVolume(m) > SINGULAR);
 }
 
 Result<glm::dmat4> fromEye(const View& view)

@@ -29,8 +29,9 @@ struct NearFar
 };
 
 /// Whether the matrix has no usable inverse. Independent of scale and of translation: the volume
-/// of the parallelepiped of the columns (or rows) is compared with the product of their lengths,
-/// so 1e-6 or 1e6 times the unit matrix is regular. NaN and infinite values are singular.
+/// of the parallelepiped of the columns is compared with the product of their lengths (1e-12), so
+/// 1e-6 or 1e6 times the unit matrix is regular, and so is any scale per axis. NaN and infinite
+/// values are singular.
 OSGVOLUMIZER_CORE_EXPORT bool isSingular(const glm::dmat3& m);
 
 /// The affine inverse of `toEye`; SINGULAR_MATRIX where there is none, or where the last row is not

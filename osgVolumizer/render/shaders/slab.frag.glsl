@@ -14,19 +14,22 @@ uniform vec4 planes[PLANES];
 #endif
 uniform float stepDepth;
 uniform int maximumSteps;
+uniform float latticeOffset; // depth of a lattice plane
 #ifdef OPAQUE_DEPTH
 uniform sampler2D opaqueDepth;
-uniform vec2 opaqueDepthScale;  // window -> texture coordinate
-uniform vec2 opaqueDepthOffset;
+uniform vec2 depthTextureScale; // window -> texture coordinate
 uniform vec3 clipZOrigin, clipZDirection, clipWOrigin, clipWDirection; // times (dx, dy, 1)
+#endif
+#ifdef LAYER_DEPTH
+uniform sampler2D layerDepth; // of the surfaces that split this segment
+uniform bool inFrontOfLayer;  // which part is drawn
 #endif
 
 #ifdef OPAQUE_DEPTH
-// Where the ray meets the opaque scene.
-float opaqueEnd()
+// Where the ray meets what left its depth in a buffer; far away where nothing did.
+float depthOnRay(sampler2D depths)
 {
-    float windowZ =
-        textureLod(opaqueDepth, gl_FragCoord.xy * opaqueDepthScale + opaqueDepthOffset, 0.0).r;
+    float windowZ = textureLod(depths, gl_FragCoord.xy * depthTextureScale, 0.0).r;
     if (windowZ >= 1.0) return 1e30;
     vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
     float z = 2.0 * windowZ - 1.0;
@@ -62,16 +65,24 @@ void main()
     for (int i = 0; i < PLANES; ++i) clipToPlane(planes[i], origin, direction, tNear, tFar);
 #endif
 #ifdef OPAQUE_DEPTH
-    tFar = min(tFar, opaqueEnd());
+    tFar = min(tFar, depthOnRay(opaqueDepth));
 #endif
+#ifdef LAYER_DEPTH
+    float tLayer = depthOnRay(layerDepth);
+    if (!inFrontOfLayer && tLayer < 1e29)
+        tNear = max(tNear, tLayer);
+    else if (inFrontOfLayer)
+        tFar = tLayer < 1e29 ? min(tFar, tLayer) : tNear;
+#endif
+    if (!(tNear < tFar)) discard;
 
     float unitsPerDepth = length(frameToUnits * direction);
     vec3 color = vec3(0.0);
     float transmittance = 1.0;
-    float cell = floor(tNear / stepDepth) + 1.0;
+    float cell = floor((tNear - latticeOffset) / stepDepth) + 1.0;
     float t = tNear;
     for (int i = 0; i < maximumSteps && t < tFar; ++i) {
-        float end = min(cell * stepDepth, tFar);
+        float end = min(latticeOffset + cell * stepDepth, tFar);
         vec4 c = classify(origin + direction * (0.5 * (t + end)));
         float through = exp2(-c.a * (end - t) * unitsPerDepth);
         color += transmittance * (1.0 - through) * c.rgb;

@@ -1,0 +1,175 @@
+#include "TetraBlocks.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace osgVolumizer {
+namespace core {
+
+namespace {
+
+constexpr std::uint32_t NONE = 0xffffffffu;
+
+/// Puts two zero bits after each of the low 10 bits.
+std::uint64_t spread(std::uint64_t v)
+{
+    v = (v | (v << 16)) & 0x030000ffu;
+    v = (v | (v << 8)) & 0x0300f00fu;
+    v = (v | (v << 4)) & 0x030c30c3u;
+    return (v | (v << 2)) & 0x09249249u;
+}
+
+} // namespace
+
+void TetraBlocks::sortTetrahedra(const TetraSet& set)
+{
+    const std::size_t n = set.tetraCount();
+    sourceTetrahedra.resize(n);
+    std::iota(sourceTetrahedra.begin(), sourceTetrahedra.end(), 0u);
+    if (n <= MAX_TETRAHEDRA && set.vertices.size() <= MAX_VERTICES) return;
+    const Box3d bounds = set.bounds();
+    glm::dvec3 scale(0.0);
+    for (int a = 0; a < 3; ++a)
+        if (bounds.size()[a] > 0.0) scale[a] = 1023.0 / bounds.size()[a];
+    _codes.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        glm::dvec3 c(0.0);
+        for (std::size_t k = 0; k < 4; ++k)
+            c += 0.25 * (set.vertices.position(set.indices[4 * i + k]) - bounds.min) * scale;
+        std::uint64_t code = 0;
+        for (int a = 0; a < 3; ++a)
+            code |= spread(static_cast<std::uint64_t>(std::min(1023.0, std::max(0.0, c[a])))) << a;
+        _codes[i] = code << 32 | i;
+    }
+    std::sort(_codes.begin(), _codes.end());
+    for (std::size_t i = 0; i < n; ++i)
+        sourceTetrahedra[i] = static_cast<std::uint32_t>(_codes[i] & 0xffffffffu);
+}
+
+void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
+{
+    _format = set.vertices.format();
+    _origin = origin;
+    places.clear();
+    blocks.clear();
+    sourceVertices.clear();
+    sortTetrahedra(set);
+    tetrahedra.resize(set.tetraCount());
+    _stamps.assign(set.vertices.size(), NONE);
+    _local.resize(set.vertices.size());
+    for (std::size_t i = 0; i < tetrahedra.size(); ++i) {
+        const TetraSet::Index* source = set.indices.data() + std::size_t(4) * sourceTetrahedra[i];
+        const auto current = static_cast<std::uint32_t>(blocks.size() - 1);
+        std::size_t fresh = 0;
+        for (int k = 0; k < 4; ++k)
+            fresh += blocks.empty() || _stamps[source[k]] != current ? 1u : 0u;
+        if (blocks.empty() || blocks.back().tetraCount == MAX_TETRAHEDRA ||
+            blocks.back().vertexCount + fresh > MAX_VERTICES) {
+            Block b;
+            b.firstVertex = static_cast<std::uint32_t>(sourceVertices.size());
+            b.firstTetra = static_cast<std::uint32_t>(i);
+            blocks.push_back(b);
+        }
+        Block& block = blocks.back();
+        ++block.tetraCount;
+        for (int k = 0; k < 4; ++k) {
+            const TetraSet::Index v = source[k];
+            if (_stamps[v] != blocks.size() - 1) {
+                _stamps[v] = static_cast<std::uint32_t>(blocks.size() - 1);
+                _local[v] = block.vertexCount++;
+                sourceVertices.push_back(v);
+                block.bounds.expand(set.vertices.position(v) - origin);
+            }
+            tetrahedra[i].v[k] = static_cast<std::uint8_t>(_local[v]);
+        }
+        const glm::dvec3 a = set.vertices.position(source[0]);
+        const glm::dvec3 b = set.vertices.position(source[1]) - a;
+        const glm::dvec3 c = set.vertices.position(source[2]) - a;
+        const glm::dvec3 d = set.vertices.position(source[3]) - a;
+        if (glm::dot(glm::cross(b, c), d) < 0.0) std::swap(tetrahedra[i].v[0], tetrahedra[i].v[1]);
+    }
+    findEdges();
+    const std::size_t stride = recordSize() - 1;
+    const auto position = static_cast<std::size_t>(_format.positionOffset());
+    records.resize(sourceVertices.size() * recordSize());
+    for (std::size_t i = 0; i < sourceVertices.size(); ++i) {
+        const double* from = set.vertices.record(sourceVertices[i]);
+        double* to = record(i);
+        std::copy(from, from + stride, to);
+        for (std::size_t a = 0; a < 3; ++a) to[position + a] -= origin[static_cast<int>(a)];
+    }
+}
+
+void TetraBlocks::findEdges()
+{
+    static constexpr int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    edges.clear();
+    tetraEdges.resize(tetrahedra.size());
+    // Number of the edge between two vertices of a block, as stamped by the block.
+    struct Entry
+    {
+        std::uint32_t block;
+        std::uint16_t edge;
+    };
+    std::vector<Entry> table(MAX_VERTICES * MAX_VERTICES, {NONE, 0});
+    for (std::uint32_t i = 0; i < blocks.size(); ++i) {
+        Block& block = blocks[i];
+        block.firstEdge = static_cast<std::uint32_t>(edges.size());
+        for (std::uint32_t t = block.firstTetra; t < block.firstTetra + block.tetraCount; ++t)
+            for (int e = 0; e < 6; ++e) {
+                std::uint8_t a = tetrahedra[t].v[ends[e][0]], b = tetrahedra[t].v[ends[e][1]];
+                if (a > b) std::swap(a, b);
+                Entry& entry = table[a * MAX_VERTICES + b];
+                if (entry.block != i) {
+                    entry = {i, static_cast<std::uint16_t>(block.edgeCount++)};
+                    edges.push_back({a, b});
+                }
+                tetraEdges[t].e[e] = entry.edge;
+            }
+    }
+}
+
+TetraBlocks::Place TetraBlocks::placeOf(const BoxIndex& boxes, const Block& block,
+                                        const Tetra& tetra) const
+{
+    glm::dvec3 p[4];
+    Box3d extent;
+    for (int k = 0; k < 4; ++k) {
+        const double* r = record(block.firstVertex + tetra.v[k]) + clipField();
+        p[k] = {r[0], r[1], r[2]};
+        extent.expand(p[k]);
+    }
+    Place place = OUTSIDE;
+    bool several = false;
+    boxes.visit(extent.min, extent.max, [&](int box, bool needsClipping) {
+        several = several || place != OUTSIDE || needsClipping;
+        place = static_cast<Place>(box);
+    });
+    if (several) return CLIP;
+    if (place == OUTSIDE) return place;
+    const glm::dvec3 upper = boxes.boxes()[place].max;
+    Place faces = 0;
+    for (int a = 0; a < 3; ++a)
+        for (int opposite = 0; opposite < 4; ++opposite) {
+            bool flush = true;
+            for (int k = 0; k < 4; ++k) flush = flush && (k == opposite || p[k][a] == upper[a]);
+            if (flush) faces |= 1u << opposite;
+        }
+    return place | faces << FACE_SHIFT;
+}
+
+void TetraBlocks::place(const BoxIndex& boxes)
+{
+    places.clear();
+    if (boxes.boxes().empty()) return;
+    places.resize(tetrahedra.size());
+    for (const Block& b : blocks)
+        for (std::uint32_t t = b.firstTetra; t < b.firstTetra + b.tetraCount; ++t)
+            places[t] = placeOf(boxes, b, tetrahedra[t]);
+}
+
+} // namespace core
+} // namespace osgVolumizer

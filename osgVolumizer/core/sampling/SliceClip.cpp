@@ -1,0 +1,113 @@
+#include "Slicer.h"
+#include "TetraCases.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgVolumizer {
+namespace core {
+
+namespace {
+
+void append(const SlicePlan& plan, const RecordPolygon& face, std::size_t bin, double spacing,
+            Slicer::Chunk& chunk)
+{
+    const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
+    const std::size_t at = chunk.vertices.size();
+    chunk.vertices.resize(at + face.size() * stride);
+    float* to = chunk.vertices.data() + at;
+    for (std::size_t i = 0; i < face.size(); ++i)
+        for (std::size_t k = 0; k < stride; ++k) *to++ = static_cast<float>(face.record(i)[k]);
+    chunk.bins.push_back(static_cast<std::uint32_t>(bin));
+    chunk.sizes.push_back(static_cast<std::uint16_t>(face.size()));
+    if (plan.primitive) chunk.spacings.push_back(static_cast<float>(spacing));
+}
+
+void clipFace(const SlicePlan& plan, int surface, double spacing, Slicer::Chunk& chunk)
+{
+    const std::size_t firstBin = static_cast<std::size_t>(plan.rank[surface - plan.firstSurface]) *
+                                 static_cast<std::size_t>(plan.brickCount);
+    if (!plan.boxes || plan.boxes->boxes().empty()) {
+        append(plan, chunk.whole, firstBin, spacing, chunk);
+        return;
+    }
+    const int field = plan.blocks->clipField();
+    Box3d extent;
+    for (std::size_t i = 0; i < chunk.whole.size(); ++i) {
+        const double* r = chunk.whole.record(i) + field;
+        extent.expand({r[0], r[1], r[2]});
+    }
+    plan.boxes->visit(extent.min, extent.max, [&](int brick, bool needsClipping) {
+        const std::size_t bin = firstBin + static_cast<std::size_t>(brick);
+        if (!needsClipping) {
+            append(plan, chunk.whole, bin, spacing, chunk);
+            return;
+        }
+        chunk.part.assign(chunk.whole);
+        chunk.part.clipBox(field, plan.boxes->boxes()[static_cast<std::size_t>(brick)]);
+        if (chunk.part.size() >= 3) append(plan, chunk.part, bin, spacing, chunk);
+    });
+}
+
+} // namespace
+
+void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
+               const TetraBlocks::Tetra& tetra, Slicer::Chunk& chunk)
+{
+    const TetraBlocks& blocks = *plan.blocks;
+    const auto stride = blocks.recordSize() - 1;
+    const double* records[4];
+    double f[4];
+    for (int i = 0; i < 4; ++i) {
+        records[i] = blocks.record(block.firstVertex + tetra.v[i]);
+        f[i] = records[i][stride];
+    }
+    const double low = std::min(std::min(f[0], f[1]), std::min(f[2], f[3]));
+    const double high = std::max(std::max(f[0], f[1]), std::max(f[2], f[3]));
+    if (!(low < high)) return;
+    int first = plan.firstSurface, last = first + plan.surfaceCount;
+    double scale = 1.0;
+    if (plan.primitive) {
+        // The tetrahedron's own layers, no thicker than those of the whole set.
+        last = std::max(1, static_cast<int>(std::ceil((high - low) * (1.0 - 1e-9))));
+        scale = last / (high - low);
+        first = 0;
+        for (double& v : f) v = (v - low) * scale;
+    }
+    int passed[4];
+    for (int i = 0; i < 4; ++i) passed[i] = surfacesPassed(f[i], first, last);
+    const int end = *std::max_element(passed, passed + 4);
+    for (int k = *std::min_element(passed, passed + 4); k < end; ++k) {
+        unsigned mask = 0;
+        for (int i = 0; i < 4; ++i) mask |= passed[i] > k ? 1u << i : 0u;
+        const TetraCase& which = TETRA_CASES[mask];
+        chunk.whole.reset(static_cast<int>(stride));
+        for (std::size_t c = 0; c < static_cast<std::size_t>(which.count); ++c) {
+            const std::size_t a = which.farVertex[c], b = which.nearVertex[c];
+            const double t = (k + 0.5 - f[a]) / (f[b] - f[a]);
+            const double *p = records[a], *q = records[b];
+            double* r = chunk.whole.append();
+            for (std::size_t n = 0; n < stride; ++n) r[n] = p[n] + t * (q[n] - p[n]);
+        }
+        chunk.whole.close();
+        int surface = k;
+        if (plan.primitive)
+            surface = std::min(plan.firstSurface + plan.surfaceCount - 1,
+                               std::max(plan.firstSurface, static_cast<int>(low + (k + 0.5) / scale)));
+        const double spacing = plan.lattice.spacing / scale;
+        if (!plan.pieces) {
+            clipFace(plan, surface, spacing, chunk);
+            continue;
+        }
+        chunk.uncut.assign(chunk.whole);
+        for (const std::vector<Plane>& piece : *plan.pieces) {
+            chunk.whole.assign(chunk.uncut);
+            for (std::size_t i = 0; i < piece.size() && chunk.whole.size() > 0; ++i)
+                chunk.whole.clipPlane(blocks.format().positionOffset(), piece[i]);
+            if (chunk.whole.size() >= 3) clipFace(plan, surface, spacing, chunk);
+        }
+    }
+}
+
+} // namespace core
+} // namespace osgVolumizer

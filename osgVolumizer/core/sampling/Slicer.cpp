@@ -1,0 +1,268 @@
+#include "Slicer.h"
+
+#include "TetraCases.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+#include <string>
+
+namespace osgVolumizer {
+namespace core {
+
+namespace {
+
+constexpr std::size_t MAX_BINS = std::size_t(1) << 24;
+constexpr std::size_t BLOCKS_PER_CHUNK = 8; ///< fewer are not worth a task
+
+/// Corners of the face of a case: 4 where two vertices are on either side, else 3.
+std::uint32_t faceSize(std::uint64_t mask) { return 3u + ((0x1668u >> mask) & 1u); }
+
+bool outside(const Box3d& box, const std::vector<Plane>& visible)
+{
+    for (const Plane& p : visible) {
+        const glm::dvec3 best(p.normal.x > 0.0 ? box.max.x : box.min.x,
+                              p.normal.y > 0.0 ? box.max.y : box.min.y,
+                              p.normal.z > 0.0 ? box.max.z : box.min.z);
+        if (p.distance(best) < 0.0) return true;
+    }
+    return false;
+}
+
+/// Whether a slice may coincide with a face in an upper plane of the clip box.
+bool flushFace(const TetraBlocks& blocks, const TetraBlocks::Block& block,
+               const TetraBlocks::Tetra& t, unsigned faces)
+{
+    double f[4];
+    for (int k = 0; k < 4; ++k)
+        f[k] = blocks.record(block.firstVertex + t.v[k])[blocks.recordSize() - 1];
+    for (int i = 0; i < 4; ++i)
+        if ((faces >> i & 1u) && f[(i + 1) % 4] == f[(i + 2) % 4] && f[(i + 1) % 4] == f[(i + 3) % 4])
+            return true;
+    return false;
+}
+
+} // namespace
+
+void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t blockIndex)
+{
+    TetraBlocks& blocks = *plan.blocks;
+    const TetraBlocks::Block& block = blocks.blocks[blockIndex];
+    if (!plan.visible.empty() && outside(block.bounds, plan.visible)) return;
+    const std::size_t size = blocks.recordSize();
+    const int first = plan.firstSurface, last = first + plan.surfaceCount;
+    const double scale = 1.0 / plan.lattice.spacing;
+    int* passed = _passed.data() + block.firstVertex;
+    int lowest = last, highest = first;
+    double* record = blocks.record(block.firstVertex);
+    for (std::uint32_t i = 0; i < block.vertexCount; ++i, record += size) {
+        const double depth =
+            depthOf(plan, record, blocks.sourceVertices[block.firstVertex + i]);
+        const double f = (plan.lattice.farDepth - depth) * scale;
+        record[size - 1] = f;
+        passed[i] = surfacesPassed(f, first, last);
+        lowest = std::min(lowest, passed[i]);
+        highest = std::max(highest, passed[i]);
+    }
+    if (lowest == highest && !plan.primitive) return; // PRIMITIVE has layers of its own
+
+    const std::size_t start = chunk.entryCount;
+    const TetraBlocks::Tetra* tetra = blocks.tetrahedra.data() + block.firstTetra;
+    const TetraBlocks::Place* place =
+        blocks.places.empty() ? nullptr : blocks.places.data() + block.firstTetra;
+    if (!place && !plan.general()) {
+        listFaces(tetra, 0, block.tetraCount, passed, chunk);
+    } else {
+        // Runs of tetrahedra that are whole in their boxes go the fast way.
+        std::uint32_t runStart = 0;
+        for (std::uint32_t t = 0; t < block.tetraCount; ++t) {
+            const TetraBlocks::Place p = place ? place[t] : 0;
+            const bool flush = p < TetraBlocks::OUTSIDE && p > TetraBlocks::BOX_MASK &&
+                               flushFace(blocks, block, tetra[t], p >> TetraBlocks::FACE_SHIFT);
+            if (p < TetraBlocks::OUTSIDE && !flush && !plan.general()) continue;
+            listFaces(tetra, runStart, t - runStart, passed, chunk);
+            runStart = t + 1;
+            if (p != TetraBlocks::OUTSIDE) clipTetra(plan, block, tetra[t], chunk);
+        }
+        listFaces(tetra, runStart, block.tetraCount - runStart, passed, chunk);
+    }
+    if (chunk.entryCount > start)
+        chunk.vertexCount +=
+            countPoints(blocks.edges.data() + block.firstEdge, block.edgeCount, passed);
+}
+
+void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
+{
+    const std::size_t bins = static_cast<std::size_t>(plan.surfaceCount) *
+                             static_cast<std::size_t>(plan.brickCount);
+    chunk.fast.assign(bins, 0);
+    chunk.clipped.assign(bins, 0);
+    chunk.entryCount = 0;
+    chunk.vertexCount = 0;
+    chunk.blockEntries.clear();
+    chunk.bins.clear();
+    chunk.sizes.clear();
+    chunk.vertices.clear();
+    chunk.spacings.clear();
+    const TetraBlocks& blocks = *plan.blocks;
+    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
+    for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
+        const std::size_t start = chunk.entryCount;
+        countBlock(plan, chunk, b);
+        chunk.blockEntries.push_back(chunk.entryCount);
+        const std::uint32_t firstTetra = blocks.blocks[b].firstTetra;
+        for (std::size_t i = start; i < chunk.entryCount; ++i) {
+            const std::uint64_t e = chunk.entries[i];
+            const auto surface = static_cast<std::size_t>((e >> 32)) -
+                                 static_cast<std::size_t>(plan.firstSurface);
+            std::size_t bin = static_cast<std::uint32_t>(plan.rank[surface]) * brickCount;
+            if (!blocks.places.empty())
+                bin += blocks.places[firstTetra + (e >> 8 & 0xffffffu)] & TetraBlocks::BOX_MASK;
+            chunk.fast[bin] += count(1, faceSize(e & 15u));
+        }
+    }
+    for (std::size_t f = 0; f < chunk.bins.size(); ++f)
+        chunk.clipped[chunk.bins[f]] += count(1, chunk.sizes[f]);
+}
+
+bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, PolygonizedFaces& out)
+{
+    std::uint64_t indices = 0, faces = 0, vertices = 0;
+    const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
+    for (std::size_t c = 0; c < chunkCount; ++c) {
+        for (const Count n : _chunks[c].fast) indices += indexCount(n), faces += faceCount(n);
+        for (const Count n : _chunks[c].clipped) indices += indexCount(n), faces += faceCount(n);
+        const std::size_t own = _chunks[c].vertexCount;
+        _chunks[c].vertexCount = vertices;
+        vertices += own;
+    }
+    for (std::size_t c = 0; c < chunkCount; ++c) {
+        _chunks[c].clippedVertex = vertices;
+        vertices += _chunks[c].vertices.size() / stride;
+    }
+    if (indices > 0xffffffffu || vertices > 0xffffffffu) return false;
+    out.faces.format = plan.blocks->format();
+    out.faces.vertices.resize(vertices * stride);
+    out.faces.indices.resize(indices);
+    out.faces.faceOffsets.resize(faces + 1);
+    out.faceSpacings.resize(plan.primitive ? faces : 0);
+    out.ranges.resize(static_cast<std::size_t>(plan.surfaceCount) *
+                      static_cast<std::size_t>(plan.brickCount));
+    Count at = 0;
+    for (std::size_t bin = 0; bin < out.ranges.size(); ++bin) {
+        const Count start = at;
+        for (std::size_t c = 0; c < chunkCount; ++c) {
+            const Count n = _chunks[c].fast[bin];
+            _chunks[c].fast[bin] = at;
+            at += n;
+        }
+        for (std::size_t c = 0; c < chunkCount; ++c) {
+            const Count n = _chunks[c].clipped[bin];
+            _chunks[c].clipped[bin] = at;
+            at += n;
+        }
+        out.ranges[bin] = {faceCount(start), faceCount(at) - faceCount(start), indexCount(start),
+                           indexCount(at) - indexCount(start)};
+    }
+    out.faces.faceOffsets[faces] = static_cast<std::uint32_t>(indices);
+    return true;
+}
+
+void Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
+{
+    const TetraBlocks& blocks = *plan.blocks;
+    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
+    std::uint32_t* const indices = out.faces.indices.data();
+    std::uint32_t* const faceOffsets = out.faces.faceOffsets.data();
+    Count* const cursors = chunk.fast.data();
+    const int* const rank = plan.rank - plan.firstSurface;
+    std::size_t i = 0;
+    for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
+        const std::size_t end = chunk.blockEntries[b - chunk.firstBlock];
+        if (i == end) continue;
+        const TetraBlocks::Block& block = blocks.blocks[b];
+        listPoints(blocks.edges.data() + block.firstEdge, block.edgeCount,
+                   _passed.data() + block.firstVertex, chunk);
+        writePoints(blocks, block, chunk,
+                    out.faces.vertices.data() + chunk.vertexCount * (blocks.recordSize() - 1));
+        chunk.vertexCount += chunk.pointCount;
+
+        const TetraBlocks::TetraEdges* tetraEdges = blocks.tetraEdges.data() + block.firstTetra;
+        const TetraBlocks::Place* places =
+            blocks.places.empty() ? nullptr : blocks.places.data() + block.firstTetra;
+        const std::uint32_t* edgePoints = chunk.edgePoints.data();
+        const std::uint64_t* entries = chunk.entries.data();
+        for (; i < end; ++i) {
+            const std::uint64_t e = entries[i];
+            const auto surface = static_cast<std::uint32_t>(e >> 32);
+            const std::size_t t = e >> 8 & 0xffffffu;
+            const TetraCase& which = TETRA_CASES[e & 15u];
+            std::size_t bin = std::size_t(static_cast<std::uint32_t>(rank[surface])) * brickCount;
+            if (places) bin += places[t] & TetraBlocks::BOX_MASK;
+            const Count cursor = cursors[bin];
+            cursors[bin] = cursor + count(1, static_cast<std::uint32_t>(which.count));
+            faceOffsets[faceCount(cursor)] = indexCount(cursor);
+            std::uint32_t* to = indices + indexCount(cursor);
+            const std::uint16_t* edges = tetraEdges[t].e;
+            to[0] = edgePoints[edges[which.edge[0]]] + surface;
+            to[1] = edgePoints[edges[which.edge[1]]] + surface;
+            to[2] = edgePoints[edges[which.edge[2]]] + surface;
+            // Of a triangle the last corner is the third once more.
+            to[which.count - 1] = edgePoints[edges[which.edge[3]]] + surface;
+        }
+    }
+    emitClipped(plan, chunk, out);
+}
+
+void Slicer::emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
+{
+    const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
+    std::copy(chunk.vertices.begin(), chunk.vertices.end(),
+              out.faces.vertices.begin() +
+                  static_cast<std::ptrdiff_t>(chunk.clippedVertex * stride));
+    auto vertex = static_cast<std::uint32_t>(chunk.clippedVertex);
+    for (std::size_t f = 0; f < chunk.bins.size(); ++f) {
+        Count& cursor = chunk.clipped[chunk.bins[f]];
+        out.faces.faceOffsets[faceCount(cursor)] = indexCount(cursor);
+        if (plan.primitive) out.faceSpacings[faceCount(cursor)] = chunk.spacings[f];
+        for (std::uint32_t k = 0; k < chunk.sizes[f]; ++k)
+            out.faces.indices[indexCount(cursor) + k] = vertex++;
+        cursor += count(1, chunk.sizes[f]);
+    }
+}
+
+Status Slicer::run(const SlicePlan& plan, Executor* executor, PolygonizedFaces& out)
+try {
+    const std::size_t bins = static_cast<std::size_t>(plan.surfaceCount) *
+                             static_cast<std::size_t>(plan.brickCount);
+    if (bins > MAX_BINS)
+        return {ErrorCode::TOO_LARGE, "polygonize: " + std::to_string(plan.surfaceCount) +
+                                          " surfaces times " + std::to_string(plan.brickCount) +
+                                          " bricks are more than 2^24."};
+    // Each chunk counts for itself; with many bins that alone would cost more than it gains.
+    const std::size_t blockCount = plan.blocks->blocks.size();
+    std::size_t chunkCount = executor ? static_cast<std::size_t>(executor->concurrency()) : 1;
+    chunkCount = std::min(chunkCount, blockCount / BLOCKS_PER_CHUNK);
+    chunkCount = std::max<std::size_t>(1, std::min(chunkCount, MAX_BINS / std::max<std::size_t>(1, bins)));
+    if (_chunks.size() < chunkCount) _chunks.resize(chunkCount);
+    for (std::size_t c = 0; c < chunkCount; ++c) {
+        _chunks[c].firstBlock = static_cast<std::uint32_t>(blockCount * c / chunkCount);
+        _chunks[c].endBlock = static_cast<std::uint32_t>(blockCount * (c + 1) / chunkCount);
+    }
+    const auto forAll = [&](const auto& task) {
+        if (chunkCount == 1) task(0);
+        else
+            executor->run(static_cast<int>(chunkCount), std::cref(task));
+    };
+    _passed.resize(plan.blocks->sourceVertices.size());
+    forAll([&](int c) { countChunk(plan, _chunks[static_cast<std::size_t>(c)]); });
+    if (!placeBins(plan, chunkCount, out))
+        return {ErrorCode::TOO_LARGE, "polygonize: the faces have more than 2^32 corners."};
+    forAll([&](int c) { emitChunk(plan, _chunks[static_cast<std::size_t>(c)], out); });
+    return {};
+} catch (const std::bad_alloc&) {
+    return {ErrorCode::TOO_LARGE, "polygonize: the faces do not fit in memory."};
+}
+
+} // namespace core
+} // namespace osgVolumizer

@@ -1,0 +1,139 @@
+#pragma once
+
+#include "../Parallel.h"
+#include "../geometry/BoxIndex.h"
+#include "../geometry/TetraBlocks.h"
+#include "ClipRecords.h"
+#include "Polygonize.h"
+#include "SurfaceFamily.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace osgVolumizer {
+namespace core {
+
+/// What one pass over a blocked tetra set has to know. Depths are relative to an anchor, positions
+/// and clip boxes to the origin of the blocks.
+struct SlicePlan
+{
+    TetraBlocks* blocks = nullptr; ///< the spare value of each record receives the layer coordinate
+    const BoxIndex* boxes = nullptr;
+    /// Depth of a vertex: dot(gradient, field - corner), unless `depths` gives it per source vertex.
+    int depthField = 0;
+    glm::dvec3 gradient{0.0};
+    glm::dvec3 corner{0.0};
+    const double* depths = nullptr;
+    SurfaceLattice lattice;
+    int firstSurface = 0, surfaceCount = 0; ///< those that get faces
+    const int* rank = nullptr;              ///< place in the output of surface firstSurface + i
+    int brickCount = 1;
+    bool primitive = false;
+    /// Convex pieces, as half-spaces relative to the origin, that faces are cut down to; or null.
+    const std::vector<std::vector<Plane>>* pieces = nullptr;
+    /// Whether every face needs the general way.
+    bool general() const { return primitive || pieces; }
+    /// Blocks that lie outside one of these half-spaces are left out.
+    std::vector<Plane> visible;
+};
+
+/// Cuts blocks of tetrahedra in two passes: the first finds out which surfaces meet which tetrahedra
+/// and counts, the second writes points and faces to their final places. In a block every point is
+/// made once, on its edge, and shared by the faces around that edge. Tetrahedra that need clipping
+/// are cut in the first pass already and copied in the second. All memory is kept.
+class Slicer
+{
+public:
+    /// Fills faces, ranges and faceSpacings of `out`; leaves it alone on failure (TOO_LARGE).
+    Status run(const SlicePlan& plan, Executor* executor, PolygonizedFaces& out);
+
+    /// Depth of a vertex, from its record.
+    static double depthOf(const SlicePlan& plan, const double* record, std::uint32_t source)
+    {
+        if (plan.depths) return plan.depths[source];
+        const double* p = record + plan.depthField;
+        return plan.gradient.x * (p[0] - plan.corner.x) + plan.gradient.y * (p[1] - plan.corner.y) +
+               plan.gradient.z * (p[2] - plan.corner.z);
+    }
+
+    /// Faces and indices of a bin in one number, so that one addition counts both.
+    using Count = std::uint64_t;
+    static constexpr Count count(std::uint32_t faces, std::uint32_t indices)
+    {
+        return Count(faces) << 32 | indices;
+    }
+    static std::uint32_t faceCount(Count c) { return static_cast<std::uint32_t>(c >> 32); }
+    static std::uint32_t indexCount(Count c) { return static_cast<std::uint32_t>(c); }
+
+    /// The share of one thread: neighbouring blocks.
+    struct Chunk
+    {
+        std::uint32_t firstBlock = 0, endBlock = 0;
+        /// Faces to make, block after block: surface << 32 | tetrahedron of the block << 8 | case.
+        std::vector<std::uint64_t> entries;
+        std::size_t entryCount = 0;
+        /// Per block, the end of its entries; points are made only where there are any.
+        std::vector<std::size_t> blockEntries;
+        std::vector<Count> fast, clipped; ///< per bin: first counts, then cursors
+        std::size_t vertexCount = 0;      ///< shared points, first their number, then the next
+        std::size_t clippedVertex = 0;    ///< where the points of clipped faces begin
+        // Faces that were clipped, in the order of making.
+        std::vector<std::uint32_t> bins;
+        std::vector<std::uint16_t> sizes;
+        std::vector<float> vertices;
+        std::vector<float> spacings;
+        RecordPolygon whole, part, uncut;
+        // Scratch of one block: its points (surface << 32 | near vertex << 8 | far vertex), and for
+        // each edge the number of its point on surface 0, if it had one.
+        std::vector<std::uint64_t> points;
+        std::size_t pointCount = 0;
+        std::vector<std::uint32_t> edgePoints;
+    };
+
+private:
+    void countChunk(const SlicePlan& plan, Chunk& chunk);
+    void countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block);
+    bool placeBins(const SlicePlan& plan, std::size_t chunkCount, PolygonizedFaces& out);
+    void emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
+    void emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
+
+    std::vector<Chunk> _chunks;
+    std::vector<int> _passed; ///< per vertex of the blocks: surfaces on the near side of which it is
+};
+
+/// Appends an entry to the chunk for every surface that meets one of `count` tetrahedra of a block,
+/// beginning with number `first`. `passed` belongs to the block's vertices.
+void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t first, std::uint32_t count,
+               const int* passed, Slicer::Chunk& chunk);
+
+/// How many points the edges of a block get.
+std::size_t countPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed);
+
+/// Fills chunk.points and chunk.edgePoints for the edges of a block.
+void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed,
+                Slicer::Chunk& chunk);
+
+/// Makes chunk.points, in vector registers as wide as the processor has.
+void writePoints(const TetraBlocks& blocks, const TetraBlocks::Block& block,
+                 const Slicer::Chunk& chunk, float* to);
+
+/// Cuts one tetrahedron the general way, clips the faces to the boxes and appends them to the chunk.
+/// Expects the layer coordinates in the records.
+void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
+               const TetraBlocks::Tetra& tetra, Slicer::Chunk& chunk);
+
+/// Number of surfaces on the near side of which a vertex with layer coordinate f lies. Surface k is at
+/// k + 1/2, and a vertex on it belongs to its far side. The subtraction is exact wherever the
+/// result matters: for f in [1/4, 1] by Sterbenz' lemma, above because f - 1/2 has no finer
+/// digits than f.
+inline int surfacesPassed(double f, int first, int last)
+{
+    double g = f - 0.5;
+    g = g < first ? first : g;
+    g = g > last ? last : g;
+    const int n = static_cast<int>(g);
+    return n + (g > n ? 1 : 0);
+}
+
+} // namespace core
+} // namespace osgVolumizer
