@@ -19,8 +19,8 @@ namespace {
 constexpr int SIZE = 33; // voxels per axis
 const glm::dvec3 MIDDLE(0.5 * (SIZE - 1));
 
-const Points WARM = {{0.0, {0.1, 0.3, 0.9, 0.02}}, {1.0, {1.0, 0.4, 0.1, 0.2}}};
-const Points COLD = {{0.0, {0.1, 0.9, 0.3, 0.01}}, {1.0, {0.2, 0.2, 1.0, 0.25}}};
+const Points WARM = {{0.0, {0.1, 0.3, 0.9, 0.005}}, {1.0, {1.0, 0.4, 0.1, 0.08}}};
+const Points COLD = {{0.0, {0.1, 0.9, 0.3, 0.002}}, {1.0, {0.2, 0.2, 1.0, 0.1}}};
 const Points GREY = {{0.0, {0.8, 0.8, 0.8, 0.0}}, {1.0, {0.9, 0.9, 0.2, 0.15}}};
 const glm::dvec4 GREEN(0.1, 0.9, 0.2, 0.6), RED(0.9, 0.1, 0.2, 0.4), BLUE(0.2, 0.3, 1.0, 0.5);
 
@@ -212,7 +212,7 @@ void offAxis(MixedScene& scene, RenderOptions& options)
     slantedPlane(scene, options);
     scene.addMesh(sphereMesh({10, 24, 12}, 6.0, 24, 12), RED);
     options.projection.makeFrustum(-0.9, 0.2, -0.1, 0.8, 1.0, 1000.0);
-    options.lookAt({70, -50, 60}, {30, 30, 10}, {0, 0, 1});
+    options.lookAt({70, -50, 60}, {43, 16, -8}, {0, 0, 1});
 }
 
 void orthographic(MixedScene& scene, RenderOptions& options)
