@@ -49,7 +49,8 @@ public:
     /// The boxes in the voxel frame: cell (i,j,k) spans cellSize from (i,j,k) * cellSize, cut at
     /// `extent`.
     std::vector<Box3d> voxelBoxes(const glm::ivec3& cellSize, const Box3d& extent) const;
-    /// The same as tetrahedra, five per box, V3F.
+    /// The same as tetrahedra, five per box, V3F. Boxes of different size meet with hanging vertices,
+    /// where pixels may be covered twice or not at all; used as clip boxes they tile exactly.
     TetraSet tetraSet(const glm::ivec3& cellSize, const Box3d& extent) const;
 
 private:
