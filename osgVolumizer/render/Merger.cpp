@@ -21,13 +21,17 @@ namespace render {
 
 namespace {
 
-// Depth range of the volume in front of the near plane; false where nothing is.
+// Depth range of the volume between the near and the far plane; false where nothing is.
 bool findDepthRange(VolumeInstance& volume, const core::View& view)
 {
     const glm::dmat4& p = view.projection;
     // The near plane is where clip z = -clip w.
     const double a = p[2][2] + p[2][3], b = p[3][2] + p[3][3];
     const double nearPlane = a != 0.0 ? b / a : 0.0;
+    // The far plane is where clip z = clip w; projections without one put it nowhere in front.
+    const double c = p[2][2] - p[2][3], d = p[3][2] - p[3][3];
+    const double farPlane =
+        c != 0.0 && d / c > nearPlane ? d / c : std::numeric_limits<double>::infinity();
     double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
     for (const SelectedBrick& brick : volume.bricks) {
         for (int i = 0; i < 8; ++i) {
@@ -43,7 +47,7 @@ bool findDepthRange(VolumeInstance& volume, const core::View& view)
             farthest = std::max(farthest, depth);
         }
     }
-    volume.depth = {std::max(nearest, nearPlane), farthest};
+    volume.depth = {std::max(nearest, nearPlane), std::min(farthest, farPlane)};
     return volume.depth.nearDepth < volume.depth.farDepth;
 }
 
@@ -66,14 +70,14 @@ void sortBricks(VolumeInstance& volume, const core::View& view)
 
 // The first and the last of our leaves, around all others.
 void addAccumulation(Accumulation& accumulation, const osgUtil::RenderLeaf& beside,
-                     std::vector<OrderedLeaf>& made)
+                     const glm::ivec4& viewport, std::vector<OrderedLeaf>& made)
 {
     const auto byDepth = [](const OrderedLeaf& a, const OrderedLeaf& b) { return a.depth < b.depth; };
     const auto ends = std::minmax_element(made.begin(), made.end(), byDepth);
     const double nearest = ends.first->depth, farthest = ends.second->depth;
     made.insert(made.begin(),
-                {farthest, accumulationLeaf(accumulation, AccumulationLeaf::BEGIN, beside)});
-    made.push_back({nearest, accumulationLeaf(accumulation, AccumulationLeaf::END, beside)});
+                {farthest, accumulationLeaf(accumulation, AccumulationLeaf::BEGIN, beside, viewport)});
+    made.push_back({nearest, accumulationLeaf(accumulation, AccumulationLeaf::END, beside, viewport)});
 }
 
 } // namespace
@@ -107,13 +111,15 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
         for (const ForeignLeaf* surface : group.surfaces) replaced.insert(&surface->leaf());
 
     FrameCounts counts;
+    const glm::ivec4 viewport(_viewport->x(), _viewport->y(), _viewport->width(),
+                              _viewport->height());
     const osg::ref_ptr<Accumulation> accumulation = makeAccumulation();
     std::vector<OrderedLeaf> made;
     for (const MergeGroup& group : groups.groups)
-        GroupComposer(group, *accumulation, counts).compose(made);
+        GroupComposer(group, viewport, *accumulation, counts).compose(made);
     for (const VolumeInstance* volume : visible)
         counts.bricksDrawn += static_cast<double>(volume->bricks.size());
-    if (!made.empty()) addAccumulation(*accumulation, *visible.front()->leaf, made);
+    if (!made.empty()) addAccumulation(*accumulation, *visible.front()->leaf, viewport, made);
 
     std::vector<OrderedLeaf> all;
     for (osgUtil::RenderLeaf* leaf : leaves)
