@@ -4,6 +4,7 @@
 
 #include <support/GLTest.h>
 
+#include <osg/ColorMask>
 #include <osg/DisplaySettings>
 #include <osgViewer/CompositeViewer>
 
@@ -19,7 +20,10 @@ constexpr int WIDTH = 64, HEIGHT = 56;
 
 RenderOptions view(const osg::Vec3d& eye = osg::Vec3d(40, -20, 30))
 {
-    return RenderOptions().size(WIDTH, HEIGHT).perspective(45.0).lookAt(eye, {12, 10, 8}, {0, 0, 1});
+    return RenderOptions()
+        .size(WIDTH, HEIGHT)
+        .perspective(45.0)
+        .lookAt(eye, {12, 10, 8}, {0, 0, 1});
 }
 
 TwinVolume makeScene()
@@ -65,45 +69,62 @@ double channelDifference(const FloatImage& a, const FloatImage& b, int channel)
     return largest;
 }
 
-TEST_F(Viewers, AnaglyphStereo)
+// The view of one eye, as OSG's scene view makes it.
+RenderOptions eyeView(const osg::DisplaySettings& settings, const RenderOptions& options, bool left)
+{
+    RenderOptions eye = options;
+    eye.view = left ? settings.computeLeftEyeViewImplementation(options.view, 1.0)
+                    : settings.computeRightEyeViewImplementation(options.view, 1.0);
+    eye.projection = left ? settings.computeLeftEyeProjectionImplementation(options.projection)
+                          : settings.computeRightEyeProjectionImplementation(options.projection);
+    return eye;
+}
+
+FloatImage stereoPicture(TwinVolume& twin, osg::DisplaySettings* settings,
+                         const RenderOptions& options)
+{
+    support::SceneRenderer renderer(twin.node, options);
+    renderer.viewer().getCamera()->setDisplaySettings(settings);
+    renderer.viewer().setFusionDistance(osgUtil::SceneView::PROPORTIONAL_TO_SCREEN_DISTANCE, 1.0f);
+    const FloatImage image = renderer.render();
+    EXPECT_EQ(renderer.glError(), 0u);
+    return image;
+}
+
+double toleranceOf(PictureTarget::Format format)
+{
+    return format == PictureTarget::BYTE ? 0.51 / 255.0 : 1e-5;
+}
+
+TEST_F(Viewers, BothEyesOfStereo)
 {
     TwinVolume twin = makeScene();
     osg::ref_ptr<osg::DisplaySettings> settings = new osg::DisplaySettings;
     settings->setStereo(true);
-    settings->setStereoMode(osg::DisplaySettings::ANAGLYPHIC);
     settings->setScreenDistance(0.5f);
-    settings->setEyeSeparation(0.06f);
-    const RenderOptions options = view();
-
-    // What OSG's scene view makes of the matrices, eye by eye.
-    const double fusion = settings->getScreenDistance();
-    RenderOptions left = options, right = options;
-    left.view = settings->computeLeftEyeViewImplementation(options.view, fusion);
-    right.view = settings->computeRightEyeViewImplementation(options.view, fusion);
-    left.projection = settings->computeLeftEyeProjectionImplementation(options.projection);
-    right.projection = settings->computeRightEyeProjectionImplementation(options.projection);
-    const FloatImage leftImage = support::renderScene(twin.node, left);
-    const FloatImage rightImage = support::renderScene(twin.node, right);
-    ASSERT_GT(compare(leftImage, rightImage).maximum, 0.01);
-
+    settings->setEyeSeparation(0.6f);
+    const FloatImage left = support::renderScene(twin.node, eyeView(*settings, view(), true));
+    const FloatImage right = support::renderScene(twin.node, eyeView(*settings, view(), false));
+    ASSERT_GT(compare(left, right).maximum, 0.05);
     for (const auto format : {PictureTarget::FLOAT32, PictureTarget::BYTE}) {
-        RenderOptions stereo = options;
-        stereo.format = format;
-        support::SceneRenderer renderer(twin.node, stereo);
-        renderer.viewer().getCamera()->setDisplaySettings(settings);
-        renderer.viewer().setFusionDistance(osgUtil::SceneView::USE_FUSION_DISTANCE_VALUE,
-                                            static_cast<float>(fusion));
-        const FloatImage image = renderer.render();
-        support::savePicture(image, "viewers_anaglyph");
-        const double tolerance = format == PictureTarget::BYTE ? 0.51 / 255.0 : 1e-5;
-        EXPECT_EQ(renderer.glError(), 0u);
-        EXPECT_LE(channelDifference(image, leftImage, 0), tolerance);
-        EXPECT_LE(channelDifference(image, rightImage, 1), tolerance);
-        EXPECT_LE(channelDifference(image, rightImage, 2), tolerance);
+        RenderOptions options = view();
+        options.format = format;
+        settings->setStereoMode(osg::DisplaySettings::LEFT_EYE);
+        EXPECT_LE(compare(stereoPicture(twin, settings, options), left).maximum,
+                  toleranceOf(format));
+        settings->setStereoMode(osg::DisplaySettings::RIGHT_EYE);
+        EXPECT_LE(compare(stereoPicture(twin, settings, options), right).maximum,
+                  toleranceOf(format));
+        // Of the other modes OSG draws the left eye only, where a camera renders to a framebuffer
+        // object: red here, the left half there.
+        settings->setStereoMode(osg::DisplaySettings::ANAGLYPHIC);
+        const FloatImage anaglyph = stereoPicture(twin, settings, options);
+        support::savePicture(anaglyph, "viewers_anaglyph");
+        EXPECT_LE(channelDifference(anaglyph, left, 0), toleranceOf(format));
     }
 }
 
-TEST_F(Viewers, HorizontalSplitStereo)
+TEST_F(Viewers, SplitStereo)
 {
     TwinVolume twin = makeScene();
     osg::ref_ptr<osg::DisplaySettings> settings = new osg::DisplaySettings;
@@ -111,32 +132,70 @@ TEST_F(Viewers, HorizontalSplitStereo)
     settings->setStereoMode(osg::DisplaySettings::HORIZONTAL_SPLIT);
     settings->setSplitStereoHorizontalSeparation(0);
     settings->setSplitStereoAutoAdjustAspectRatio(false);
-    const double fusion = settings->getScreenDistance();
-    const RenderOptions options = view();
-    RenderOptions left = options, right = options;
-    left.view = settings->computeLeftEyeViewImplementation(options.view, fusion);
-    right.view = settings->computeRightEyeViewImplementation(options.view, fusion);
-    left.projection = settings->computeLeftEyeProjectionImplementation(options.projection);
-    right.projection = settings->computeRightEyeProjectionImplementation(options.projection);
-    left.width = right.width = WIDTH / 2;
-    const FloatImage leftImage = support::renderScene(twin.node, left);
-    const FloatImage rightImage = support::renderScene(twin.node, right);
-
-    support::SceneRenderer renderer(twin.node, options);
-    renderer.viewer().getCamera()->setDisplaySettings(settings);
-    renderer.viewer().setFusionDistance(osgUtil::SceneView::USE_FUSION_DISTANCE_VALUE,
-                                        static_cast<float>(fusion));
-    const FloatImage image = renderer.render();
+    RenderOptions half = eyeView(*settings, view(), true);
+    half.width = WIDTH / 2;
+    const FloatImage left = support::renderScene(twin.node, half);
+    const FloatImage image = stereoPicture(twin, settings, view());
     support::savePicture(image, "viewers_split");
-    double largest = 0.0;
+    FloatImage cut(WIDTH / 2, HEIGHT);
     for (int y = 0; y < HEIGHT; ++y)
-        for (int x = 0; x < WIDTH; ++x) {
-            const FloatImage& half = x < WIDTH / 2 ? leftImage : rightImage;
-            const glm::vec4 d = glm::abs(image.at(x, y) - half.at(x % (WIDTH / 2), y));
-            largest = std::max({largest, double(d.r), double(d.g), double(d.b), double(d.a)});
-        }
-    EXPECT_LE(largest, 1e-5);
-    EXPECT_GT(support::coveredPixels(image, 0.3f).count(), 300u);
+        for (int x = 0; x < WIDTH / 2; ++x)
+            cut.at(x, y) = image.at(x, y);
+    EXPECT_GT(support::coveredPixels(cut, 0.3f).count(), 300u);
+    EXPECT_LE(compare(cut, left).maximum, 1e-5);
+}
+
+TEST_F(Viewers, ColourMasksArePassedOn)
+{
+    // What an anaglyph needs of each eye: other channels keep what was there.
+    TwinVolume twin = makeScene();
+    for (const auto format : {PictureTarget::FLOAT32, PictureTarget::BYTE}) {
+        RenderOptions options = view();
+        options.background = osg::Vec4(0.2f, 0.4f, 0.6f, 1.0f);
+        const FloatImage plain = support::renderScene(twin.node, options);
+        options.format = format;
+        support::SceneRenderer renderer(twin.node, options);
+        osg::ref_ptr<osg::ColorMask> mask = new osg::ColorMask(true, false, false, true);
+        twin.node->getOrCreateStateSet()->setAttribute(mask, osg::StateAttribute::OVERRIDE);
+        const FloatImage red = renderer.render();
+        twin.node->setStateSet(nullptr);
+        EXPECT_LE(channelDifference(red, plain, 0), toleranceOf(format));
+        const FloatImage background(WIDTH, HEIGHT, glm::vec4(0.2f, 0.4f, 0.6f, 1.0f));
+        EXPECT_LE(channelDifference(red, background, 1), toleranceOf(format));
+        EXPECT_LE(channelDifference(red, background, 2), toleranceOf(format));
+        EXPECT_GT(channelDifference(plain, background, 2), 0.1);
+    }
+}
+
+TEST_F(Viewers, PartOfTheTarget)
+{
+    TwinVolume twin = makeScene();
+    const int x0 = 11, y0 = 17, width = 40, height = 30;
+    RenderOptions small = view();
+    small.size(width, height);
+    const FloatImage expected = support::renderScene(twin.node, small);
+    EXPECT_GT(support::coveredPixels(expected, 0.3f).count(), 100u);
+    for (const auto format : {PictureTarget::FLOAT32, PictureTarget::BYTE}) {
+        RenderOptions options = view();
+        options.format = format;
+        options.projection = small.projection;
+        support::SceneRenderer renderer(twin.node, options);
+        renderer.viewer().getCamera()->setViewport(x0, y0, width, height);
+        const FloatImage image = renderer.render();
+        FloatImage cut(width, height);
+        double outside = 0.0;
+        for (int y = 0; y < HEIGHT; ++y)
+            for (int x = 0; x < WIDTH; ++x) {
+                const bool inside = x >= x0 && x < x0 + width && y >= y0 && y < y0 + height;
+                if (inside)
+                    cut.at(x - x0, y - y0) = image.at(x, y);
+                else
+                    outside = std::max(outside, double(image.at(x, y).a));
+            }
+        EXPECT_LE(compare(cut, expected).maximum, toleranceOf(format));
+        EXPECT_EQ(outside, 0.0);
+        EXPECT_EQ(renderer.glError(), 0u);
+    }
 }
 
 TEST_F(Viewers, SlaveCameras)
@@ -162,7 +221,8 @@ TEST_F(Viewers, SlaveCameras)
     viewer.getCamera()->setProjectionResizePolicy(osg::Camera::FIXED);
     viewer.realize();
     for (int frame = 0; frame < 2; ++frame) {
-        for (const Window& window : windows) window.target->request(1);
+        for (const Window& window : windows)
+            window.target->request(1);
         viewer.frame();
     }
     for (std::size_t i = 0; i < 2; ++i) {
@@ -206,11 +266,13 @@ TEST_P(Threading, CompositeViewerOfTwoContexts)
     for (const double opacity : opacities) {
         ASSERT_TRUE(twin.node->getLookupTable()->setPoints(smoothPoints(opacity),
                                                            LookupTable::RANGE_FRACTION));
-        for (const Window& window : windows) window.target->request(2);
+        for (const Window& window : windows)
+            window.target->request(2);
         viewer->frame();
         viewer->frame();
         std::vector<FloatImage> images;
-        for (const Window& window : windows) images.push_back(window.target->wait());
+        for (const Window& window : windows)
+            images.push_back(window.target->wait());
         viewer->stopThreading(); // the expected picture shares the scene
         for (int i = 0; i < 3; ++i) {
             const FloatImage expected = support::renderScene(twin.node, view(eyes[i]));
@@ -226,13 +288,14 @@ TEST_P(Threading, CompositeViewerOfTwoContexts)
 
 TEST_P(Threading, ChangesWhileFramesAreDrawn)
 {
-    // Voxels, table, geometry and sampling change between frames that are still being drawn; the last
-    // picture is that of the last state.
+    // Voxels, table, geometry and sampling change between frames that are still being drawn; the
+    // last picture is that of the last state.
     TwinVolume twin = makeScene();
     RenderOptions options = view();
     options.threading = GetParam();
     support::SceneRenderer renderer(twin.node, options);
-    osg::ref_ptr<Voxels> other = makeVoxels({25, 21, 17}, [](const glm::dvec3& p) { return 1.0 - bumps(p); });
+    osg::ref_ptr<Voxels> other =
+        makeVoxels({25, 21, 17}, [](const glm::dvec3& p) { return 1.0 - bumps(p); });
     other->setBrickSize(glm::ivec3(13));
     const osg::ref_ptr<Voxels> original = twin.node->getVoxels();
     for (int i = 0; i < 12; ++i) {
@@ -255,10 +318,14 @@ TEST_P(Threading, ChangesWhileFramesAreDrawn)
 std::string modelName(const ::testing::TestParamInfo<osgViewer::ViewerBase::ThreadingModel>& info)
 {
     switch (info.param) {
-    case osgViewer::ViewerBase::SingleThreaded: return "SingleThreaded";
-    case osgViewer::ViewerBase::CullDrawThreadPerContext: return "CullDrawThreadPerContext";
-    case osgViewer::ViewerBase::DrawThreadPerContext: return "DrawThreadPerContext";
-    default: return "CullThreadPerCameraDrawThreadPerContext";
+    case osgViewer::ViewerBase::SingleThreaded:
+        return "SingleThreaded";
+    case osgViewer::ViewerBase::CullDrawThreadPerContext:
+        return "CullDrawThreadPerContext";
+    case osgViewer::ViewerBase::DrawThreadPerContext:
+        return "DrawThreadPerContext";
+    default:
+        return "CullThreadPerCameraDrawThreadPerContext";
     }
 }
 
