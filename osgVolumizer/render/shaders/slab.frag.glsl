@@ -1,7 +1,7 @@
 // One segment: the part of the pixel's ray in the volume's region and the slab, and in front of the opaque
-// scene. Midpoint rule on a lattice of depths, with exact ends, so second order in the step whatever
-// cuts the segment. A brick draws those cells of the lattice whose midpoints lie in its clip box: bricks
-// add no ends, and however many there are, all samples stay where they are.
+// scene. Midpoint rule with equal steps and exact ends, so second order in the step whatever cuts
+// the segment. A brick takes the steps whose midpoints lie in its clip box: bricks add no ends, and however many
+// there are, all samples stay where they are.
 
 // What is left of the light when marching stops: the most that this may change any pixel.
 #define OPAQUE_ENOUGH 3e-5
@@ -15,8 +15,7 @@ uniform vec3 clipMin, clipMax;     // of the brick
 uniform vec4 planes[PLANES];
 #endif
 uniform float stepDepth;
-uniform int maximumSteps;
-uniform float latticeOffset; // depth of a lattice plane
+uniform float maximumSteps;
 #ifdef OPAQUE_DEPTH
 uniform sampler2D opaqueDepth;
 uniform vec2 depthTextureScale; // window -> texture coordinate
@@ -67,6 +66,65 @@ vec2 boxSegment(vec3 low, vec3 high, vec3 origin, vec3 direction)
     return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
 }
 
+// Number of steps for a segment, such that their mean over all segments is the period.
+float stepsOf(float tNear, float tFar)
+{
+    return clamp(floor((tFar - tNear) / stepDepth + 0.5), 1.0, maximumSteps);
+}
+
+#ifdef PREINTEGRATED
+// Light of the part of [tNear, tFar] in the brick, front to back: premultiplied colour, opacity. The ends of
+// steps are where the table is asked, so steps are cut at the brick's ends.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    float dt = (tFar - tNear) / stepsOf(tNear, tFar);
+    float unitsPerDepth = length(frameToUnits * direction);
+    float t = max(tNear, brick.x), end = min(tFar, brick.y);
+    float step = floor((t - tNear) / dt);
+    vec3 color = vec3(0.0);
+    float transmittance = 1.0;
+    float entry = tableEntry(origin + t * direction);
+    vec4 integral = tableIntegral(entry);
+    for (float i = 0.0; i < maximumSteps + 2.0 && t < end; i += 1.0) {
+        step += 1.0;
+        float next = max(t, min(tNear + step * dt, end));
+        float nextEntry = tableEntry(origin + next * direction);
+        vec4 nextIntegral = tableIntegral(nextEntry);
+        vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
+        float through = exp2(-c.a * (next - t) * unitsPerDepth);
+        color += transmittance * (1.0 - through) * c.rgb;
+        transmittance *= through;
+        t = next;
+        entry = nextEntry;
+        integral = nextIntegral;
+        if (transmittance < OPAQUE_ENOUGH) break;
+    }
+    return vec4(color, 1.0 - transmittance);
+}
+#else
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    float count = stepsOf(tNear, tFar);
+    float dt = (tFar - tNear) / count;
+    float first = max(0.0, ceil((brick.x - tNear) / dt - 0.5));
+    float last = min(count, ceil((brick.y - tNear) / dt - 0.5)); // not one of the brick's
+    vec3 dp = direction * dt;
+    vec3 p = origin + direction * (tNear + 0.5 * dt);
+    float stepUnits = dt * length(frameToUnits * direction);
+    vec3 color = vec3(0.0);
+    float transmittance = 1.0;
+    for (float i = first; i < last; i += 1.0) {
+        vec4 c = classify(p + i * dp);
+        float through = exp2(-c.a * stepUnits);
+        color += transmittance * (1.0 - through) * c.rgb;
+        transmittance *= through;
+        if (transmittance < OPAQUE_ENOUGH) break;
+    }
+    return vec4(color, 1.0 - transmittance);
+}
+#endif
+}
+
 void main()
 {
     vec3 origin, direction;
@@ -88,27 +146,7 @@ void main()
     else if (inFrontOfLayer)
         tFar = tLayer < 1e29 ? min(tFar, tLayer) : tNear;
 #endif
-    float first = max(tNear, brick.x);
-    if (!(first < min(tFar, brick.y))) discard;
+    if (!(max(tNear, brick.x) < min(tFar, brick.y))) discard;
 
-    float unitsPerDepth = length(frameToUnits * direction);
-    vec3 color = vec3(0.0);
-    float transmittance = 1.0;
-    float cell = floor((first - latticeOffset) / stepDepth);
-    float t = max(tNear, latticeOffset + cell * stepDepth);
-    for (int i = 0; i < maximumSteps && t < tFar; ++i) {
-        cell += 1.0;
-        float end = min(latticeOffset + cell * stepDepth, tFar);
-        float middle = 0.5 * (t + end);
-        if (middle >= brick.y) break;
-        if (middle >= brick.x) {
-            vec4 c = classify(origin + direction * middle);
-            float through = exp2(-c.a * (end - t) * unitsPerDepth);
-            color += transmittance * (1.0 - through) * c.rgb;
-            transmittance *= through;
-            if (transmittance < OPAQUE_ENOUGH) break;
-        }
-        t = max(t, end);
-    }
-    fragColor = vec4(color, 1.0 - transmittance);
+    fragColor = march(origin, direction, tNear, tFar, brick);
 }
