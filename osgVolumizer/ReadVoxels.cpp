@@ -70,21 +70,47 @@ Status apply(Voxels& voxels, const io::VoxelOptions& options)
     return status;
 }
 
+/// The voxels of `source`, with what the option string says; `name` is for messages.
+Result<osg::ref_ptr<Voxels>> makeVoxels(const Result<io::Source>& source,
+                                        const io::VoxelOptions& options, const std::string& name)
+{
+    if (!source.ok()) return source.status;
+    osg::ref_ptr<Voxels> voxels = new Voxels;
+    Status status = voxels->setSource(source->get());
+    if (status.ok()) status = apply(*voxels, options);
+    if (!status.ok()) return Status(status.code, name + ": " + status.text, status.index);
+    return voxels;
+}
+
 Result<osg::ref_ptr<Voxels>> read(const std::string& name, const osgDB::Options* options,
                                   const Progress& progress)
 {
     const Result<io::VoxelOptions> said =
         io::parseVoxelOptions(options ? options->getOptionString() : std::string());
     if (!said.ok()) return Status(said.status.code, name + ": " + said.status.text);
-    const Result<io::Source> source = readSource(name, options, progress);
-    if (!source.ok()) return source.status;
-    osg::ref_ptr<Voxels> voxels = new Voxels;
-    Status status = voxels->setSource(source->get());
-    if (status.ok()) status = apply(*voxels, *said);
-    if (!status.ok()) return Status(status.code, name + ": " + status.text, status.index);
-    voxels->setFileName(name);
-    voxels->setFileOptions(said->voxelText());
+    Result<osg::ref_ptr<Voxels>> voxels =
+        makeVoxels(readSource(name, options, progress), *said, name);
+    if (!voxels.ok()) return voxels;
+    (*voxels)->setFileName(name);
+    (*voxels)->setFileOptions(said->voxelText());
     return voxels;
+}
+
+Result<osg::ref_ptr<Voxels>> read(const std::vector<std::string>& names,
+                                  const osgDB::Options* options, const Progress& progress)
+{
+    const Result<io::VoxelOptions> said =
+        io::parseVoxelOptions(options ? options->getOptionString() : std::string());
+    if (!said.ok()) return said.status;
+    if (names.empty()) return Status(ErrorCode::VALUE_INVALID, "a stack of no slices");
+    std::vector<std::string> paths;
+    for (const std::string& name : names) {
+        paths.push_back(osgDB::findDataFile(name, options));
+        if (paths.back().empty())
+            return Status(ErrorCode::FILE_NOT_FOUND, "slice " + name + " was not found",
+                          static_cast<std::int64_t>(paths.size()) - 1);
+    }
+    return makeVoxels(io::readStack(paths, progress), *said, names.front());
 }
 
 } // namespace
@@ -96,6 +122,17 @@ Result<osg::ref_ptr<Voxels>> readVoxels(const std::string& name, const osgDB::Op
         return read(name, options, progress);
     } catch (const std::exception& e) { // memory, or a path that the system cannot express
         return Status(ErrorCode::FILE_UNREADABLE, name + " cannot be read: " + e.what());
+    }
+}
+
+Result<osg::ref_ptr<Voxels>> readSlices(const std::vector<std::string>& names,
+                                        const osgDB::Options* options, const Progress& progress)
+{
+    try {
+        return read(names, options, progress);
+    } catch (const std::exception& e) {
+        return Status(ErrorCode::FILE_UNREADABLE,
+                      std::string("slices cannot be read: ") + e.what());
     }
 }
 

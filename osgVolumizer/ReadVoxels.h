@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace osgVolumizer {
 
@@ -31,6 +32,12 @@ using Progress = std::function<void(double fraction)>;
 /// another length, unequal slices); VALUE_INVALID (option or raw format); TOO_LARGE (more than 2^36
 /// bytes, or than there is memory), found before anything is allocated.
 OSGVOLUMIZER_EXPORT Result<osg::ref_ptr<Voxels>> readVoxels(const std::string& name,
+                                                            const osgDB::Options* options = nullptr,
+                                                            const Progress& progress = {});
+
+/// Reads 2D images of one size, a slice each, in the order given. The result refers to no file, and
+/// so is stored inline in a scene.
+OSGVOLUMIZER_EXPORT Result<osg::ref_ptr<Voxels>> readSlices(const std::vector<std::string>& names,
                                                             const osgDB::Options* options = nullptr,
                                                             const Progress& progress = {});
 

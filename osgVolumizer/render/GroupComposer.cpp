@@ -105,9 +105,7 @@ void GroupComposer::makeLooks(PreparedVolume& volume, const Region& region)
         look->surfaceNormal = volume.sliced->surfaceNormal();
         look->features.spherical = volume.sliced->spherical();
     } else if (!alone()) {
-        // One lattice of depths for all, the same in every region.
-        look->step = _step;
-        look->latticeOffset = -std::fmod(look->referenceDepth, _step);
+        look->step = _step; // the same samples in every region, and one for each volume in a thin slab
     }
     volume.looks[WHOLE] = look;
     for (const Part part : {BEHIND_LAYER, IN_FRONT_OF_LAYER}) {

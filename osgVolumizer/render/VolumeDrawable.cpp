@@ -1,6 +1,7 @@
 #include "VolumeDrawable.h"
 
 #include "../Error.h"
+#include "BrickTextures.h"
 #include "ContextResources.h"
 #include "Matrices.h"
 #include "PixelRays.h"
@@ -34,6 +35,10 @@ public:
     void set(const char* name, const glm::vec3& v) const
     {
         _gl.glUniform3fv(location(name), 1, glm::value_ptr(v));
+    }
+    void set(const char* name, const glm::vec4& v) const
+    {
+        _gl.glUniform4fv(location(name), 1, glm::value_ptr(v));
     }
     void set(const char* name, const glm::dmat3& v) const
     {
@@ -70,19 +75,29 @@ glm::dvec4 viewportOf(osg::State& state)
     return {v[0], v[1], v[2], v[3]};
 }
 
+void setTable(const Uniforms& uniforms, const VolumeLook& look)
+{
+    uniforms.set("valueToEntry", look.valueToEntry);
+    uniforms.set("lastEntry", static_cast<float>(look.table.count - 1));
+    if (!look.features.preIntegrated) return;
+    uniforms.set("tableLow", look.table.low);
+    uniforms.set("tableHigh", look.table.high);
+}
+
 void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& rays)
 {
     uniforms.set("windowCenter", glm::vec2(rays.windowCenter));
     uniforms.set("rayOrigin", rays.origin);
     uniforms.set("rayDirection", rays.direction);
     uniforms.set("frameToUnits", look.frameToUnits);
-    uniforms.set("valueToTable", look.valueToTable);
+    if (look.table.texture) setTable(uniforms, look);
     if (look.features.slab) {
         uniforms.set("stepDepth", static_cast<float>(look.step));
-        uniforms.set("maximumSteps", look.maximumSteps);
-        uniforms.set("latticeOffset", static_cast<float>(look.latticeOffset));
+        uniforms.set("maximumSteps", static_cast<float>(look.maximumSteps));
         if (look.features.layerDepth)
             uniforms.set("inFrontOfLayer", look.inFrontOfLayer ? 1 : 0);
+        uniforms.set("regionMin", look.regionMin);
+        uniforms.set("regionMax", look.regionMax);
         uniforms.set("planes", look.planes);
     } else {
         uniforms.set("surfaceNormal", glm::vec3(look.surfaceNormal));
@@ -165,6 +180,7 @@ void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms, const Bric
                   "osgVolumizer bricks uploaded", 1.0);
             count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
                   "osgVolumizer bytes uploaded", static_cast<double>(batch.textureBytes));
+            chooseFormat(state, *batch.texture);
         }
         state.applyTextureAttribute(UNIT_VOXELS, batch.texture.get());
         uniforms.set("textureScale", batch.textureScale);
@@ -206,7 +222,8 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     setLook(uniforms, *_look, *rays);
     if (_look->features.opaqueDepth)
         setDepthTextures(state, uniforms, *rays, _look->features, resources->accumulation);
-    if (_look->table) state.applyTextureAttribute(UNIT_TABLE, _look->table.get());
+    if (_look->table.texture)
+        state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
     {
         const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
         const auto drawBatches = [&]() {

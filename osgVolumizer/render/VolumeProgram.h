@@ -2,6 +2,8 @@
 
 #include <osg/StateSet>
 
+#include <cstdint>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -16,13 +18,22 @@ struct ProgramFeatures
     bool opaqueDepth = false;
     bool layerDepth = false; ///< surfaces split the segment; expects opaqueDepth
     bool spherical = false; ///< slices are spheres about the eye
-    int planeCount = 0;  ///< half-spaces that end the segment, besides the clip box
+    bool exact = false;     ///< interpolate from fetched samples, in full precision
+    bool nearest = false, cubic = false; ///< else linear
+    bool before = false;        ///< look samples up, then interpolate
+    bool preIntegrated = false; ///< look runs of values up
+    bool smoothTable = false;   ///< interpolate between entries
+    int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
 
-    unsigned key() const
+    /// Different for different features.
+    std::uint64_t key() const
     {
-        return unsigned(slab) | unsigned(voxelCoordinates) << 1 | unsigned(vertexColors) << 2 |
-               unsigned(voxels) << 3 | unsigned(rgba) << 4 | unsigned(opaqueDepth) << 5 |
-               unsigned(spherical) << 6 | unsigned(layerDepth) << 7 | unsigned(planeCount) << 8;
+        std::uint64_t result = static_cast<std::uint64_t>(planeCount);
+        for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth, layerDepth,
+                          spherical, exact, nearest, cubic, before, preIntegrated,
+                          smoothTable})
+            result = result << 1 | std::uint64_t(flag);
+        return result;
     }
 };
 

@@ -52,6 +52,30 @@ Grid::Cell Grid::cellAt(const glm::dvec3& p) const
     return cell;
 }
 
+double Grid::cubicValue(const glm::dvec3& p) const
+{
+    int index[3][4];
+    double weight[3][4];
+    for (int a = 0; a < 3; ++a) {
+        const double v = std::clamp(p[a], 0.0, double(_size[a] - 1));
+        const int low = int(v);
+        for (int n = 0; n < 4; ++n) {
+            index[a][n] = std::clamp(low + n - 1, 0, _size[a] - 1);
+            const double d = std::abs(v - (low + n - 1));
+            weight[a][n] = d < 1.0   ? (1.5 * d - 2.5) * d * d + 1.0
+                           : d < 2.0 ? ((-0.5 * d + 2.5) * d - 4.0) * d + 2.0
+                                     : 0.0;
+        }
+    }
+    double sum = 0.0;
+    for (int k = 0; k < 4; ++k)
+        for (int j = 0; j < 4; ++j)
+            for (int i = 0; i < 4; ++i)
+                sum += weight[0][i] * weight[1][j] * weight[2][k] *
+                       sample(index[0][i], index[1][j], index[2][k]);
+    return sum;
+}
+
 double Grid::value(const glm::dvec3& p) const
 {
     if (_interpolation == NEAREST) {
@@ -60,6 +84,7 @@ double Grid::value(const glm::dvec3& p) const
             i[a] = int(std::floor(std::clamp(p[a], 0.0, double(_size[a] - 1)) + 0.5));
         return sample(i[0], i[1], i[2]);
     }
+    if (_interpolation == CUBIC) return cubicValue(p);
     const Cell cell = cellAt(p);
     const double* c = cell.corner;
     const glm::dvec3& f = cell.f;
@@ -114,6 +139,10 @@ void Grid::appendBreaks(const glm::dvec3& origin, const glm::dvec3& direction, d
             appendCubicRoots(f, values, faces[i], faces[i + 1], breaks);
         }
     }
+    if (_interpolation == CUBIC)
+        for (std::size_t i = 0; i + 1 < faces.size(); ++i)
+            for (int n = 1; n < 4; ++n)
+                breaks.push_back(faces[i] + 0.25 * n * (faces[i + 1] - faces[i]));
     breaks.insert(breaks.end(), faces.begin() + 1, faces.end() - 1);
 }
 

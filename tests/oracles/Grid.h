@@ -17,7 +17,8 @@ public:
     enum Interpolation
     {
         NEAREST,
-        LINEAR
+        LINEAR,
+        CUBIC ///< Keys's kernel, a = -1/2, per axis
     };
 
     /// Expects size.x * size.y * size.z samples, and at least one per axis.
@@ -36,16 +37,17 @@ public:
     }
 
     double value(const glm::dvec3& p) const override;
-    /// Of the interpolant; 0 for NEAREST.
+    /// Of the interpolant; 0 for NEAREST. Not for CUBIC.
     glm::dvec3 gradient(const glm::dvec3& p) const override;
-    /// The faces of cells (LINEAR) or of voxels (NEAREST), and within a cell the roots of value(t)
-    /// = v.
+    /// The faces of cells (LINEAR, CUBIC) or of voxels (NEAREST), and within a cell the roots of
+    /// value(t) = v (LINEAR), or three places between (CUBIC).
     void appendBreaks(const glm::dvec3& origin, const glm::dvec3& direction, double t0, double t1,
                       const std::vector<double>& values,
                       std::vector<double>& breaks) const override;
 
 private:
     struct Cell;
+    double cubicValue(const glm::dvec3& p) const;
     Cell cellAt(const glm::dvec3& p) const;
 
     glm::ivec3 _size;

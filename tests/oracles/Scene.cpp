@@ -68,6 +68,19 @@ Volume voxelVolume(std::shared_ptr<const Field> field, const glm::ivec3& size, c
     return v;
 }
 
+void classifySamples(Volume& volume, const Grid& samples, Grid::Interpolation how)
+{
+    for (int c = 0; c < 4; ++c) {
+        std::vector<double> values;
+        for (double v : samples.samples()) {
+            const glm::dvec4 color = volume.table.color(v);
+            const double extinction = Table::extinction(color.a);
+            values.push_back(c == 3 ? extinction : extinction * color[c]);
+        }
+        volume.medium[std::size_t(c)] = std::make_shared<Grid>(samples.size(), values, how);
+    }
+}
+
 void Scene::addQuad(const std::array<glm::dvec3, 4>& corners, const glm::dvec4& color, bool opaque)
 {
     const int surface = triangles.empty() ? 1 : triangles.back().surface + 1;

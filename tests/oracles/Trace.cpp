@@ -60,7 +60,17 @@ std::vector<double> cuts(const Path& path)
 
 Medium mediumOf(const Crossing& c, double depth)
 {
-    const double value = c.volume->field->value(c.fieldOrigin + depth * c.fieldDirection);
+    const glm::dvec3 place = c.fieldOrigin + depth * c.fieldDirection;
+    if (c.volume->medium[3]) {
+        const double scale = c.objectLength / c.volume->unit;
+        Medium m;
+        // Interpolants may overshoot; below nothing there is nothing.
+        m.extinction = std::max(0.0, c.volume->medium[3]->value(place)) * scale;
+        for (int i = 0; i < 3 && m.extinction > 0.0; ++i)
+            m.emission[i] = std::max(0.0, c.volume->medium[std::size_t(i)]->value(place)) * scale;
+        return m;
+    }
+    const double value = c.volume->field->value(place);
     const glm::dvec4 color = c.volume->table.color(value);
     Medium m;
     m.extinction = Table::extinction(color.a) * c.objectLength / c.volume->unit;

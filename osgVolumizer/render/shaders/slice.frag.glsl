@@ -22,7 +22,15 @@ void main()
     // A ray along the planes would see an infinitely thick layer: it sees no plane either.
     float layer = spacing / max(abs(dot(surfaceNormal, direction)), 1e-12);
 #endif
+#ifdef PREINTEGRATED
+    // The layer's own ends; one frame unit of the ray is `direction`.
+    vec3 halfLayer = 0.5 * layer * direction;
+    float entry0 = tableEntry(voxelCoordinate - halfLayer);
+    float entry1 = tableEntry(voxelCoordinate + halfLayer);
+    vec4 c = classifyRun(entry0, tableIntegral(entry0), entry1, tableIntegral(entry1));
+#else
     vec4 c = classify(voxelCoordinate);
+#endif
 #ifdef VERTEX_COLORS
 #ifdef VOXELS
     c *= vertexColor;
