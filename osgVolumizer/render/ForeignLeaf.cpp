@@ -107,7 +107,10 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
         (*projection)(row, 2) = scale * p(row, 2) + offset * p(row, 3);
 
     const osg::Depth* depth = effectiveDepth(_leaf->_parent);
-    const double rangeNear = depth ? depth->getZNear() : 0.0, rangeFar = depth ? depth->getZFar() : 1.0;
+    // Segments are split at true depths, whatever range the leaf draws to.
+    const bool ownRange = depth && !layer;
+    const double rangeNear = ownRange ? depth->getZNear() : 0.0;
+    const double rangeFar = ownRange ? depth->getZFar() : 1.0;
     const auto window = [&](double z) {
         return rangeNear + (rangeFar - rangeNear) * 0.5 * (z + 1.0);
     };
