@@ -1,5 +1,6 @@
 #include "Accumulation.h"
 
+#include "ScissorScope.h"
 #include "VolumeProgram.h"
 
 #include <osg/Depth>
@@ -168,7 +169,7 @@ void Accumulation::end(osg::RenderInfo& renderInfo)
     state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
-void Accumulation::beginLayer(osg::RenderInfo& renderInfo)
+void Accumulation::beginLayer(osg::RenderInfo& renderInfo, const glm::ivec4& area)
 {
     osg::State& state = *renderInfo.getState();
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
@@ -185,6 +186,8 @@ void Accumulation::beginLayer(osg::RenderInfo& renderInfo)
         glReadBuffer(GL_NONE);
     }
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, buffers.layerFramebuffer);
+    const ScissorScope scissor;
+    scissor.set(area);
     glClear(GL_DEPTH_BUFFER_BIT);
 }
 
@@ -206,8 +209,8 @@ void Accumulation::writeBack(osg::State& state, AccumulationBuffers& buffers)
                          s.y + s.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step)
-    : _accumulation(accumulation), _step(step)
+AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step, const glm::ivec4& area)
+    : _accumulation(accumulation), _step(step), _area(area)
 {
     setSupportsDisplayList(false);
     setUseDisplayList(false);
@@ -221,16 +224,16 @@ void AccumulationLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
     switch (_step) {
     case BEGIN: _accumulation->begin(renderInfo); break;
     case END: _accumulation->end(renderInfo); break;
-    case BEGIN_LAYER: _accumulation->beginLayer(renderInfo); break;
+    case BEGIN_LAYER: _accumulation->beginLayer(renderInfo, _area); break;
     case END_LAYER: _accumulation->endLayer(renderInfo); break;
     }
 }
 
 osgUtil::RenderLeaf* accumulationLeaf(Accumulation& accumulation, AccumulationLeaf::Step step,
-                                      const osgUtil::RenderLeaf& beside)
+                                      const osgUtil::RenderLeaf& beside, const glm::ivec4& area)
 {
     osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
-        new AccumulationLeaf(&accumulation, step), beside._projection, beside._modelview);
+        new AccumulationLeaf(&accumulation, step, area), beside._projection, beside._modelview);
     beside._parent->find_or_insert(accumulationStateSet())->addLeaf(leaf);
     return leaf.get();
 }

@@ -5,6 +5,8 @@
 #include <osg/Drawable>
 #include <osgUtil/RenderLeaf>
 
+#include <glm/vec4.hpp>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -29,7 +31,8 @@ public:
     void begin(osg::RenderInfo& renderInfo);
     void end(osg::RenderInfo& renderInfo);
     /// Redirects drawing to an empty depth buffer, where surfaces leave their nearest depth...
-    void beginLayer(osg::RenderInfo& renderInfo);
+    /// \param area window rectangle (x, y, width, height) that is cleared and drawn to
+    void beginLayer(osg::RenderInfo& renderInfo, const glm::ivec4& area);
     /// ...for segments to be split at.
     void endLayer(osg::RenderInfo& renderInfo);
 
@@ -49,8 +52,8 @@ class AccumulationLeaf : public osg::Drawable
 public:
     enum Step { BEGIN, END, BEGIN_LAYER, END_LAYER };
 
-    AccumulationLeaf(Accumulation* accumulation, Step step);
-    osg::Object* cloneType() const override { return new AccumulationLeaf(nullptr, BEGIN); }
+    AccumulationLeaf(Accumulation* accumulation, Step step, const glm::ivec4& area);
+    osg::Object* cloneType() const override { return new AccumulationLeaf(nullptr, BEGIN, glm::ivec4(0)); }
     osg::Object* clone(const osg::CopyOp&) const override { return cloneType(); }
     const char* libraryName() const override { return "osgVolumizer"; }
     const char* className() const override { return "AccumulationLeaf"; }
@@ -59,11 +62,12 @@ public:
 private:
     osg::ref_ptr<Accumulation> _accumulation;
     Step _step;
+    glm::ivec4 _area;
 };
 
 /// A leaf for a step, among the leaves of the same bin and view as `beside`.
 osgUtil::RenderLeaf* accumulationLeaf(Accumulation& accumulation, AccumulationLeaf::Step step,
-                                      const osgUtil::RenderLeaf& beside);
+                                      const osgUtil::RenderLeaf& beside, const glm::ivec4& area);
 
 } // namespace render
 } // namespace osgVolumizer

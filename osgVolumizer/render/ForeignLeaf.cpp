@@ -92,7 +92,8 @@ std::optional<ForeignLeaf> ForeignLeaf::examine(osgUtil::RenderLeaf& leaf,
     return result;
 }
 
-osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, bool layer) const
+osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, bool layer,
+                                        osg::Drawable* drawable) const
 {
     const osg::Matrixd& p = *_leaf->_projection;
     const double zNear =
@@ -124,8 +125,8 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
         set->setAttribute(own, force); // whether there is a depth test at all stays as it was
     }
     osg::ref_ptr<osgUtil::RenderLeaf> copy =
-        new osgUtil::RenderLeaf(const_cast<osg::Drawable*>(_leaf->getDrawable()), projection,
-                                _leaf->_modelview, _leaf->_depth, _leaf->_traversalOrderNumber);
+        new osgUtil::RenderLeaf(drawable ? drawable : const_cast<osg::Drawable*>(_leaf->getDrawable()),
+                                projection, _leaf->_modelview, _leaf->_depth, _leaf->_traversalOrderNumber);
     _leaf->_parent->find_or_insert(set)->addLeaf(copy);
     return copy.get();
 }

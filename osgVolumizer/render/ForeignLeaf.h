@@ -51,7 +51,9 @@ public:
     /// projection, and the window depths of these planes its depth range. Window z is affine in 1/z, so every
     /// fragment keeps its depth exactly, whatever the shader. An infinite end is left as it was.
     /// \param layer into the layer buffer: nearest depth, no colour
-    osgUtil::RenderLeaf* piece(const core::DepthInterval& interval, bool layer) const;
+    /// \param drawable draws the part of the leaf's drawable that matters; null: all of it
+    osgUtil::RenderLeaf* piece(const core::DepthInterval& interval, bool layer,
+                               osg::Drawable* drawable = nullptr) const;
 
 private:
     explicit ForeignLeaf(osgUtil::RenderLeaf& leaf) : _leaf(&leaf) {}

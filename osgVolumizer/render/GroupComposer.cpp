@@ -2,6 +2,7 @@
 
 #include "../Error.h"
 #include "Matrices.h"
+#include "ScreenAreas.h"
 
 #include <osgUtil/StateGraph>
 
@@ -14,6 +15,8 @@ namespace render {
 
 namespace {
 
+// More rectangles would cost more than they save.
+constexpr std::size_t MAXIMUM_REGIONS = 8;
 constexpr double INFINITE_DEPTH = std::numeric_limits<double>::infinity();
 
 double middle(const core::DepthInterval& d) { return 0.5 * (d.nearDepth + d.farDepth); }
@@ -34,25 +37,77 @@ bool GroupComposer::prepare(VolumeInstance& instance, PreparedVolume& volume)
     volume.instance = &instance;
     volume.view = {toGlm(*instance.leaf->_modelview), toGlm(*instance.leaf->_projection)};
     if (instance.look->features.slab) return true;
-    const bool alone = _group.volumes.size() == 1 && _group.surfaces.empty();
+    const bool mergeable = _group.volumes.size() > 1 || !_group.surfaces.empty();
     volume.sliced.reset(new SlicedVolume);
-    const Status status = volume.sliced->polygonize(instance, volume.view, !alone);
+    const Status status = volume.sliced->polygonize(instance, volume.view, mergeable);
     ++_counts.polygonizations;
     if (!status) reportError(status);
     return status.ok();
 }
 
-void GroupComposer::makeLooks(PreparedVolume& volume, double step)
+void GroupComposer::prepareVolumes()
+{
+    std::vector<VolumeInstance*> instances = _group.volumes;
+    std::sort(instances.begin(), instances.end(), comesFirst);
+    _step = INFINITE_DEPTH;
+    for (VolumeInstance* instance : instances) {
+        PreparedVolume volume;
+        if (!prepare(*instance, volume)) continue;
+        _step = std::min(_step, volume.sliced ? volume.sliced->spacing() : instance->look->step);
+        _volumes.push_back(std::move(volume));
+    }
+}
+
+// Surfaces that, looked at closely, reach into no volume stay the leaves they are.
+void GroupComposer::prepareSurfaces(std::vector<OrderedLeaf>& leaves)
+{
+    for (const ForeignLeaf* leaf : _group.surfaces) {
+        Surface surface;
+        surface.leaf = leaf;
+        surface.mesh = SurfaceMesh::of(*leaf);
+        surface.view = surface.mesh ? surface.mesh->view() : leaf->view();
+        const bool reaches =
+            std::any_of(_volumes.begin(), _volumes.end(), [&surface](const PreparedVolume& v) {
+                return v.instance->depth.overlaps(surface.view.depth);
+            });
+        if (reaches)
+            _surfaces.push_back(std::move(surface));
+        else
+            leaves.push_back({leaf->leaf()._depth, &leaf->leaf()});
+    }
+}
+
+std::vector<GroupComposer::Region> GroupComposer::findRegions() const
+{
+    std::vector<ScreenArea> areas;
+    for (std::size_t s = 0; s < _surfaces.size(); ++s) {
+        // What is no mesh of triangles may be wider than its bounds: points, lines, text.
+        const int margin = _surfaces[s].mesh ? 2 : 16;
+        areas.push_back({pixelRectangle(_surfaces[s].view.screen, _viewport, margin), {s}});
+    }
+    areas = joinOverlapping(std::move(areas), MAXIMUM_REGIONS);
+    std::vector<Region> regions;
+    std::vector<glm::ivec4> rest = {_viewport};
+    for (const ScreenArea& area : areas) {
+        regions.push_back({{area.rectangle}, area.members});
+        rest = subtract(rest, area.rectangle);
+    }
+    if (!rest.empty()) regions.push_back({rest, {}});
+    return regions;
+}
+
+void GroupComposer::makeLooks(PreparedVolume& volume, const Region& region)
 {
     auto look = std::make_shared<VolumeLook>(*volume.instance->look);
+    look->scissors = region.rectangles;
     if (volume.sliced) {
         look->step = volume.sliced->spacing();
         look->surfaceNormal = volume.sliced->surfaceNormal();
         look->features.spherical = volume.sliced->spherical();
-    } else if (_group.volumes.size() > 1 || !_group.surfaces.empty()) {
-        // One lattice of depths for all.
-        look->step = step;
-        look->latticeOffset = -std::fmod(look->referenceDepth, step);
+    } else if (!alone()) {
+        // One lattice of depths for all, the same in every region.
+        look->step = _step;
+        look->latticeOffset = -std::fmod(look->referenceDepth, _step);
     }
     volume.looks[WHOLE] = look;
     for (const Part part : {BEHIND_LAYER, IN_FRONT_OF_LAYER}) {
@@ -63,7 +118,7 @@ void GroupComposer::makeLooks(PreparedVolume& volume, double step)
     }
 }
 
-std::vector<core::ScheduledInterval> GroupComposer::schedule() const
+std::vector<core::ScheduledInterval> GroupComposer::schedule(const Region& region) const
 {
     std::vector<core::ScheduleMember> members;
     core::ScheduleLimits limits;
@@ -72,48 +127,52 @@ std::vector<core::ScheduledInterval> GroupComposer::schedule() const
         // A slice has no inside that a layer could split.
         if (volume.sliced) limits.surfaceSteps = 1.0;
     }
-    for (const ForeignLeaf* surface : _group.surfaces)
-        members.push_back({surface->view().depth, false, 0.0});
+    for (std::size_t s : region.surfaces)
+        members.push_back({_surfaces[s].view.depth, false, 0.0});
     return core::depthSchedule(members, limits);
 }
 
-void GroupComposer::findEnds(const std::vector<core::ScheduledInterval>& intervals)
+// The part of each surface in each interval. Members of the schedule are the volumes, then the region's surfaces.
+void GroupComposer::splitSurfaces(const Region& region,
+                                  const std::vector<core::ScheduledInterval>& intervals)
 {
-    _surfaceEnds.assign(_group.surfaces.size(), {INFINITE_DEPTH, -INFINITE_DEPTH});
-    const int volumes = static_cast<int>(_volumes.size());
-    for (const core::ScheduledInterval& interval : intervals) {
-        for (int s : interval.surfaces) {
-            core::DepthInterval& ends = _surfaceEnds[static_cast<std::size_t>(s - volumes)];
-            ends.nearDepth = std::min(ends.nearDepth, interval.depth.nearDepth);
-            ends.farDepth = std::max(ends.farDepth, interval.depth.farDepth);
+    std::vector<core::DepthInterval> depths;
+    for (const core::ScheduledInterval& interval : intervals) depths.push_back(interval.depth);
+    for (std::size_t i = 0; i < region.surfaces.size(); ++i) {
+        Surface& surface = _surfaces[region.surfaces[i]];
+        const int member = static_cast<int>(_volumes.size() + i);
+        surface.ends = {INFINITE_DEPTH, -INFINITE_DEPTH};
+        for (const core::ScheduledInterval& interval : intervals) {
+            const auto& in = interval.surfaces;
+            if (std::find(in.begin(), in.end(), member) == in.end()) continue;
+            surface.ends.nearDepth = std::min(surface.ends.nearDepth, interval.depth.nearDepth);
+            surface.ends.farDepth = std::max(surface.ends.farDepth, interval.depth.farDepth);
         }
+        if (surface.mesh) surface.splits = surface.mesh->split(depths);
     }
 }
 
 void GroupComposer::compose(std::vector<OrderedLeaf>& leaves)
 {
-    std::vector<VolumeInstance*> instances = _group.volumes;
-    std::sort(instances.begin(), instances.end(), comesFirst);
-    double step = INFINITE_DEPTH;
-    for (VolumeInstance* instance : instances) {
-        PreparedVolume volume;
-        if (!prepare(*instance, volume)) continue;
-        step = std::min(step, volume.sliced ? volume.sliced->spacing() : instance->look->step);
-        _volumes.push_back(std::move(volume));
-    }
-    for (PreparedVolume& volume : _volumes) makeLooks(volume, step);
-
-    if (_volumes.size() == 1 && _group.surfaces.empty()) {
-        PreparedVolume& volume = _volumes.front();
-        addVolume(volume, meshOf(volume, {volume.instance->depth}), WHOLE,
-                  volume.instance->look->referenceDepth, leaves);
+    prepareVolumes();
+    prepareSurfaces(leaves);
+    if (_volumes.empty()) return;
+    if (_surfaces.empty()) {
+        composeRegion({}, leaves);
         return;
     }
-    const std::vector<core::ScheduledInterval> intervals = schedule();
-    findEnds(intervals);
+    for (const Region& region : findRegions()) composeRegion(region, leaves);
+}
+
+void GroupComposer::composeRegion(const Region& region, std::vector<OrderedLeaf>& leaves)
+{
+    for (PreparedVolume& volume : _volumes) makeLooks(volume, region);
+    const std::vector<core::ScheduledInterval> intervals = schedule(region);
+    splitSurfaces(region, intervals);
     _counts.intervals += static_cast<double>(intervals.size());
     bool reversed = false;
-    for (const core::ScheduledInterval& interval : intervals) {
+    for (std::size_t i = 0; i < intervals.size(); ++i) {
+        const core::ScheduledInterval& interval = intervals[i];
         std::vector<int> order = interval.volumes;
         if (reversed) std::reverse(order.begin(), order.end());
         reversed = !reversed;
@@ -126,32 +185,35 @@ void GroupComposer::compose(std::vector<OrderedLeaf>& leaves)
             continue;
         }
         flush(leaves);
-        composeMixed(interval, order, leaves);
+        composeMixed(region, intervals, i, order, leaves);
     }
     flush(leaves);
 }
 
-void GroupComposer::composeMixed(const core::ScheduledInterval& interval,
-                                 const std::vector<int>& order, std::vector<OrderedLeaf>& leaves)
+void GroupComposer::composeMixed(const Region& region,
+                                 const std::vector<core::ScheduledInterval>& intervals,
+                                 std::size_t interval, const std::vector<int>& order,
+                                 std::vector<OrderedLeaf>& leaves)
 {
-    const double depth = middle(interval.depth);
+    const core::DepthInterval& range = intervals[interval].depth;
+    const double depth = middle(range);
     std::vector<std::shared_ptr<const VolumeMesh>> meshes;
     bool split = false;
     for (int v : order) {
         PreparedVolume& volume = _volumes[static_cast<std::size_t>(v)];
-        meshes.push_back(meshOf(volume, {interval.depth}));
+        meshes.push_back(meshOf(volume, {range}));
         split = split || (!volume.sliced && !meshes.back()->batches.empty());
     }
     if (split) {
-        addStep(AccumulationLeaf::BEGIN_LAYER, depth, leaves);
-        addPieces(interval, true, leaves);
-        addStep(AccumulationLeaf::END_LAYER, depth, leaves);
+        addStep(AccumulationLeaf::BEGIN_LAYER, region, depth, leaves);
+        addPieces(region, intervals, interval, true, leaves);
+        addStep(AccumulationLeaf::END_LAYER, region, depth, leaves);
     }
     for (std::size_t i = 0; i < order.size(); ++i) {
         PreparedVolume& volume = _volumes[static_cast<std::size_t>(order[i])];
         addVolume(volume, meshes[i], volume.sliced ? WHOLE : BEHIND_LAYER, depth, leaves);
     }
-    addPieces(interval, false, leaves);
+    addPieces(region, intervals, interval, false, leaves);
     for (std::size_t i = order.size(); i-- > 0;) {
         PreparedVolume& volume = _volumes[static_cast<std::size_t>(order[i])];
         if (!volume.sliced) addVolume(volume, meshes[i], IN_FRONT_OF_LAYER, depth, leaves);
@@ -170,11 +232,10 @@ void GroupComposer::flush(std::vector<OrderedLeaf>& leaves)
 
 std::shared_ptr<const VolumeMesh>
 GroupComposer::meshOf(const PreparedVolume& volume,
-                      const std::vector<core::DepthInterval>& intervals)
+                      const std::vector<core::DepthInterval>& intervals) const
 {
     if (!volume.sliced) return slabMesh(*volume.instance, volume.view, intervals);
-    if (_group.volumes.size() == 1 && _group.surfaces.empty())
-        return volume.sliced->mesh(*volume.instance);
+    if (alone()) return volume.sliced->mesh(*volume.instance);
     return volume.sliced->mesh(*volume.instance,
                                {intervals.back().nearDepth, intervals.front().farDepth});
 }
@@ -200,28 +261,36 @@ void GroupComposer::addVolume(PreparedVolume& volume, std::shared_ptr<const Volu
     leaves.push_back({depth, leaf.get()});
 }
 
-void GroupComposer::addPieces(const core::ScheduledInterval& interval, bool layer,
-                              std::vector<OrderedLeaf>& leaves)
+void GroupComposer::addPieces(const Region& region,
+                              const std::vector<core::ScheduledInterval>& intervals,
+                              std::size_t interval, bool layer, std::vector<OrderedLeaf>& leaves)
 {
-    const int volumes = static_cast<int>(_volumes.size());
-    for (int s : interval.surfaces) {
-        const auto index = static_cast<std::size_t>(s - volumes);
+    const core::ScheduledInterval& scheduled = intervals[interval];
+    for (int member : scheduled.surfaces) {
+        const Surface& surface =
+            _surfaces[region.surfaces[static_cast<std::size_t>(member) - _volumes.size()]];
+        osg::ref_ptr<osg::Drawable> part;
+        if (surface.mesh) {
+            if (surface.splits[interval]->empty()) continue;
+            part = surface.mesh->drawable(surface.splits[interval]);
+        }
         // The outermost pieces reach as far as the leaf's own planes: bounds may be too tight.
-        core::DepthInterval depth = interval.depth;
-        if (depth.nearDepth == _surfaceEnds[index].nearDepth) depth.nearDepth = -INFINITE_DEPTH;
-        if (depth.farDepth == _surfaceEnds[index].farDepth) depth.farDepth = INFINITE_DEPTH;
-        osgUtil::RenderLeaf* leaf = _group.surfaces[index]->piece(depth, layer);
+        core::DepthInterval depth = scheduled.depth;
+        if (depth.nearDepth == surface.ends.nearDepth) depth.nearDepth = -INFINITE_DEPTH;
+        if (depth.farDepth == surface.ends.farDepth) depth.farDepth = INFINITE_DEPTH;
+        osgUtil::RenderLeaf* leaf = surface.leaf->piece(depth, layer, part);
         if (!leaf) continue;
-        leaves.push_back({middle(interval.depth), leaf});
+        leaves.push_back({middle(scheduled.depth), leaf});
         ++_counts.surfacePieces;
     }
 }
 
-void GroupComposer::addStep(AccumulationLeaf::Step step, double depth,
+void GroupComposer::addStep(AccumulationLeaf::Step step, const Region& region, double depth,
                             std::vector<OrderedLeaf>& leaves)
 {
-    leaves.push_back(
-        {depth, accumulationLeaf(_accumulation, step, *_volumes.front().instance->leaf)});
+    const glm::ivec4 area = region.rectangles.empty() ? _viewport : region.rectangles.front();
+    leaves.push_back({depth, accumulationLeaf(_accumulation, step,
+                                              *_volumes.front().instance->leaf, area)});
 }
 
 } // namespace render

@@ -3,6 +3,7 @@
 #include "Accumulation.h"
 #include "ForeignLeaf.h"
 #include "MeshBuilder.h"
+#include "SurfaceMesh.h"
 
 #include <osgUtil/RenderLeaf>
 
@@ -41,11 +42,16 @@ struct MergeGroup
 /// more. Several volumes are drawn in slabs one step thick, alternating who goes first: the error of drawing one
 /// slab of A behind one of B, ½ tauA tauB h² (cA - cB), has the other sign in the next slab, so it
 /// cancels, and what remains is second order in h and independent of who is A.
+///
+/// Only pixels that surfaces can touch pay for them: the viewport is cut into rectangles around surfaces that
+/// overlap each other on the screen, each with intervals of its own, and the rest.
 class GroupComposer
 {
 public:
-    GroupComposer(const MergeGroup& group, Accumulation& accumulation, FrameCounts& counts)
-        : _group(group), _accumulation(accumulation), _counts(counts)
+    /// \param viewport x, y, width, height in pixels
+    GroupComposer(const MergeGroup& group, const glm::ivec4& viewport, Accumulation& accumulation,
+                  FrameCounts& counts)
+        : _group(group), _viewport(viewport), _accumulation(accumulation), _counts(counts)
     {
     }
     void compose(std::vector<OrderedLeaf>& leaves);
@@ -61,26 +67,50 @@ private:
         std::vector<core::DepthInterval> pending; ///< whole intervals, not yet a leaf
     };
 
+    struct Surface
+    {
+        const ForeignLeaf* leaf = nullptr;
+        std::unique_ptr<SurfaceMesh> mesh; ///< where its triangles are known
+        BoxInView view;
+        core::DepthInterval ends;                 ///< of the intervals that it is drawn in
+        std::vector<SurfaceMesh::Indices> splits; ///< per interval of the schedule, with a mesh
+    };
+    /// A part of the viewport with a schedule of its own: only the surfaces that show there matter.
+    struct Region
+    {
+        std::vector<glm::ivec4> rectangles; ///< none: everywhere
+        std::vector<std::size_t> surfaces;
+    };
+
     bool prepare(VolumeInstance& instance, PreparedVolume& volume);
-    void makeLooks(PreparedVolume& volume, double step);
-    std::vector<core::ScheduledInterval> schedule() const;
-    void findEnds(const std::vector<core::ScheduledInterval>& intervals);
-    void composeMixed(const core::ScheduledInterval& interval, const std::vector<int>& order,
+    void prepareVolumes();
+    void prepareSurfaces(std::vector<OrderedLeaf>& leaves);
+    std::vector<Region> findRegions() const;
+    void composeRegion(const Region& region, std::vector<OrderedLeaf>& leaves);
+    void makeLooks(PreparedVolume& volume, const Region& region);
+    std::vector<core::ScheduledInterval> schedule(const Region& region) const;
+    void splitSurfaces(const Region& region, const std::vector<core::ScheduledInterval>& intervals);
+    void composeMixed(const Region& region, const std::vector<core::ScheduledInterval>& intervals,
+                      std::size_t interval, const std::vector<int>& order,
                       std::vector<OrderedLeaf>& leaves);
     void flush(std::vector<OrderedLeaf>& leaves);
     void addVolume(PreparedVolume& volume, std::shared_ptr<const VolumeMesh> mesh, Part part,
                    double depth, std::vector<OrderedLeaf>& leaves);
-    void addPieces(const core::ScheduledInterval& interval, bool layer,
-                   std::vector<OrderedLeaf>& leaves);
-    void addStep(AccumulationLeaf::Step step, double depth, std::vector<OrderedLeaf>& leaves);
+    void addPieces(const Region& region, const std::vector<core::ScheduledInterval>& intervals,
+                   std::size_t interval, bool layer, std::vector<OrderedLeaf>& leaves);
+    void addStep(AccumulationLeaf::Step step, const Region& region, double depth,
+                 std::vector<OrderedLeaf>& leaves);
     std::shared_ptr<const VolumeMesh> meshOf(const PreparedVolume& volume,
-                                             const std::vector<core::DepthInterval>& intervals);
+                                             const std::vector<core::DepthInterval>& intervals) const;
+    bool alone() const { return _volumes.size() == 1 && _surfaces.empty(); }
 
     const MergeGroup& _group;
+    const glm::ivec4 _viewport;
     Accumulation& _accumulation;
     FrameCounts& _counts;
     std::vector<PreparedVolume> _volumes;
-    std::vector<core::DepthInterval> _surfaceEnds; ///< of the intervals that each surface is drawn in
+    std::vector<Surface> _surfaces;
+    double _step = 0.0; ///< of the finest volume
     int _pendingVolume = -1;
 };
 

@@ -66,14 +66,14 @@ void sortBricks(VolumeInstance& volume, const core::View& view)
 
 // The first and the last of our leaves, around all others.
 void addAccumulation(Accumulation& accumulation, const osgUtil::RenderLeaf& beside,
-                     std::vector<OrderedLeaf>& made)
+                     const glm::ivec4& viewport, std::vector<OrderedLeaf>& made)
 {
     const auto byDepth = [](const OrderedLeaf& a, const OrderedLeaf& b) { return a.depth < b.depth; };
     const auto ends = std::minmax_element(made.begin(), made.end(), byDepth);
     const double nearest = ends.first->depth, farthest = ends.second->depth;
     made.insert(made.begin(),
-                {farthest, accumulationLeaf(accumulation, AccumulationLeaf::BEGIN, beside)});
-    made.push_back({nearest, accumulationLeaf(accumulation, AccumulationLeaf::END, beside)});
+                {farthest, accumulationLeaf(accumulation, AccumulationLeaf::BEGIN, beside, viewport)});
+    made.push_back({nearest, accumulationLeaf(accumulation, AccumulationLeaf::END, beside, viewport)});
 }
 
 } // namespace
@@ -107,13 +107,15 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
         for (const ForeignLeaf* surface : group.surfaces) replaced.insert(&surface->leaf());
 
     FrameCounts counts;
+    const glm::ivec4 viewport(_viewport->x(), _viewport->y(), _viewport->width(),
+                              _viewport->height());
     const osg::ref_ptr<Accumulation> accumulation = makeAccumulation();
     std::vector<OrderedLeaf> made;
     for (const MergeGroup& group : groups.groups)
-        GroupComposer(group, *accumulation, counts).compose(made);
+        GroupComposer(group, viewport, *accumulation, counts).compose(made);
     for (const VolumeInstance* volume : visible)
         counts.bricksDrawn += static_cast<double>(volume->bricks.size());
-    if (!made.empty()) addAccumulation(*accumulation, *visible.front()->leaf, made);
+    if (!made.empty()) addAccumulation(*accumulation, *visible.front()->leaf, viewport, made);
 
     std::vector<OrderedLeaf> all;
     for (osgUtil::RenderLeaf* leaf : leaves)

@@ -5,6 +5,10 @@
 
 #include <glm/gtc/matrix_access.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -32,6 +36,8 @@ public:
     {
         _mesh->stride = SLAB_STRIDE;
         _mesh->slabOffset = 3;
+        const Result<core::NearFar> planes = core::nearFar(view.projection);
+        if (planes) _nearPlane = planes->nearDepth + 1e-5 * std::abs(planes->nearDepth);
     }
 
     void append(const core::DepthInterval& interval)
@@ -60,8 +66,8 @@ private:
         if (depths.farDepth <= interval.nearDepth || depths.nearDepth >= interval.farDepth) return;
         _polytope.setBox(brick.box);
         for (const core::Plane& plane : _volume.prepared->obliquePlanes) _polytope.clip(plane, CUT);
-        // A little beyond, so that the cap on the near plane itself is not cut off by GL.
-        const double nearest = interval.nearDepth + 1e-5 * std::abs(interval.nearDepth);
+        // A little beyond the near plane, so that the cap on it is not cut off by GL.
+        const double nearest = std::max(interval.nearDepth, _nearPlane);
         if (depths.nearDepth < nearest) _polytope.clip(depthPlane(_view.toEye, nearest), CUT);
         if (depths.farDepth > interval.farDepth)
             _polytope.clip(flipped(depthPlane(_view.toEye, interval.farDepth)), CUT);
@@ -110,6 +116,7 @@ private:
     const VolumeInstance& _volume;
     const core::View& _view;
     const glm::dvec4 _eye;
+    double _nearPlane = -std::numeric_limits<double>::infinity();
     core::ConvexPolytope _polytope;
     std::shared_ptr<VolumeMesh> _mesh;
 };

@@ -4,6 +4,7 @@
 #include "ContextResources.h"
 #include "Matrices.h"
 #include "PixelRays.h"
+#include "ScissorScope.h"
 #include "Statistics.h"
 
 #include <osg/Program>
@@ -208,7 +209,16 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     if (_look->table) state.applyTextureAttribute(UNIT_TABLE, _look->table.get());
     {
         const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
-        for (const BrickBatch& batch : _mesh->batches) drawBatch(renderInfo, uniforms, batch);
+        const auto drawBatches = [&]() {
+            for (const BrickBatch& batch : _mesh->batches) drawBatch(renderInfo, uniforms, batch);
+        };
+        if (_look->scissors.empty()) {
+            drawBatches();
+        } else {
+            const ScissorScope scissor;
+            for (const glm::ivec4& rectangle : _look->scissors)
+                if (scissor.set(rectangle)) drawBatches();
+        }
     }
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));

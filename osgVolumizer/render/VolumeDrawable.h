@@ -55,6 +55,7 @@ struct VolumeLook
     glm::dvec3 surfaceNormal{0.0};    ///< slices: frame units; along which `step` is counted
     double latticeOffset = 0.0;       ///< slabs: depth of a plane of samples' lattice
     bool inFrontOfLayer = false;      ///< slabs: which part of a segment split by surfaces
+    std::vector<glm::ivec4> scissors; ///< window rectangles to draw in; none: everywhere
     int maximumSteps = 1;
     std::vector<glm::vec4> planes; ///< the region's half-spaces (frame)
 };

@@ -66,7 +66,7 @@ bool writeFunction(osgDB::OutputStream& os, const LookupTable& table)
         for (const core::TransferFunction::Point& p : table.getFunction()->points())
             values.insert(values.end(), {p.value, p.color.r, p.color.g, p.color.b, p.color.a});
         record.add("Domain", std::string(domainNames[table.getDomain()]));
-        record.add("Points", std::move(values));
+        record.add("Points", std::move(values), 5);
     }
     writeRecord(os, record);
     return true;

@@ -28,6 +28,7 @@ struct Field
 
     std::string name;
     Value value;
+    std::size_t valuesPerLine = 8; ///< in text
 };
 
 /// "Integers", "Doubles", "Indices", "Text", "Bytes": how text files call Field::value.index().
@@ -42,9 +43,9 @@ public:
     static constexpr int version = 1;
 
     const std::vector<Field>& fields() const { return _fields; }
-    void add(std::string name, Field::Value value)
+    void add(std::string name, Field::Value value, std::size_t valuesPerLine = 8)
     {
-        _fields.push_back({std::move(name), std::move(value)});
+        _fields.push_back({std::move(name), std::move(value), valuesPerLine});
     }
 
     /// The field of a name, or null.

@@ -16,7 +16,7 @@ namespace osgVolumizer {
 namespace serializers {
 namespace {
 
-constexpr std::size_t valuesPerLine = 8; // more go between brackets, on lines of their own
+constexpr std::size_t valuesWithoutBrackets = 8; // more go on lines of their own
 constexpr std::size_t bytesPerLine = 72;
 
 thread_local std::streamsize callersDigits;
@@ -80,12 +80,13 @@ void swapUnlessLittleEndian(Bytes& bytes)
 struct WriteValue
 {
     osgDB::OutputStream& os;
+    std::size_t valuesPerLine;
 
     template <class T>
     void operator()(const std::vector<T>& values) const
     {
         os << static_cast<unsigned long>(values.size());
-        const bool lines = values.size() > valuesPerLine;
+        const bool lines = values.size() > valuesWithoutBrackets;
         if (lines) os << os.BEGIN_BRACKET << std::endl;
         for (std::size_t i = 0; i < values.size(); ++i) {
             writeValue(os, values[i]);
@@ -159,6 +160,12 @@ Status cutShort(const std::string& field)
     return Status(ErrorCode::FILE_UNREADABLE, "the file ends in field " + field);
 }
 
+Status tooMany(const std::string& field, std::uint64_t count)
+{
+    return Status(ErrorCode::SIZE_MISMATCH,
+                  "field " + field + " has more than its " + std::to_string(count) + " values");
+}
+
 /// Values of one field.
 class ValueReader
 {
@@ -204,9 +211,7 @@ public:
             if (!unquote(token) || !appendBase64(token, bytes.data))
                 return refuse(bytes.data.size() / size, token);
         }
-        if (bytes.data.size() != _count * size)
-            return Status(ErrorCode::SIZE_MISMATCH, "field " + _name + " has more than its " +
-                                                        std::to_string(_count) + " samples");
+        if (bytes.data.size() != _count * size) return tooMany(_name, _count);
         swapUnlessLittleEndian(bytes);
         return close();
     }
@@ -228,9 +233,7 @@ private:
         std::string token;
         if (!_bracket) return Status();
         if (!_tokens.next(token)) return cutShort(_name);
-        if (token == "}") return Status();
-        return Status(ErrorCode::SIZE_MISMATCH, "field " + _name + " has more than its " +
-                                                    std::to_string(_count) + " values");
+        return token == "}" ? Status() : tooMany(_name, _count);
     }
     static bool unquote(std::string& token)
     {
@@ -247,8 +250,8 @@ private:
                               " values instead of " + std::to_string(_count),
                           i);
         return Status(ErrorCode::VALUE_INVALID,
-                      "field " + _name + ", value " + std::to_string(index) + " is '" +
-                          token.substr(0, 40) + "'",
+                      "field " + _name + ", value " + std::to_string(index) + " of " +
+                          std::to_string(_count) + ", is '" + token.substr(0, 40) + "'",
                       i);
     }
 
@@ -258,20 +261,22 @@ private:
     bool _begun = false, _bracket = false;
 };
 
-Status readField(Tokens& tokens, const std::string& name, Record& record)
+// `count` is what the field says of itself.
+Status readField(Tokens& tokens, const std::string& name, Record& record, std::uint64_t& count)
 {
-    std::string kind, count;
-    if (!tokens.next(kind) || !tokens.next(count)) return cutShort(name);
+    std::string kind, number;
+    if (!tokens.next(kind) || !tokens.next(number)) return cutShort(name);
     std::int64_t n = 0;
-    if (!parseNumber(count, n) || n < 0)
+    if (!parseNumber(number, n) || n < 0)
         return Status(ErrorCode::VALUE_INVALID,
-                      "field " + name + " has '" + count.substr(0, 40) + "' values");
+                      "field " + name + " has '" + number.substr(0, 40) + "' values");
+    count = std::uint64_t(n);
     static const Field::Value values[kindCount] = {Field::Integers(), Field::Doubles(),
                                                    Field::Indices(), std::string(), Bytes()};
     for (std::size_t k = 0; k < kindCount; ++k) {
         if (kind != kindName(k)) continue;
         Field::Value value = values[k];
-        const Status status = std::visit(ValueReader(tokens, name, std::uint64_t(n)), value);
+        const Status status = std::visit(ValueReader(tokens, name, count), value);
         if (status.ok()) record.add(name, std::move(value));
         return status;
     }
@@ -279,17 +284,25 @@ Status readField(Tokens& tokens, const std::string& name, Record& record)
                   "field " + name + " is of unknown kind '" + kind.substr(0, 40) + "'");
 }
 
+bool isName(const std::string& token)
+{
+    return (token[0] >= 'A' && token[0] <= 'Z') || (token[0] >= 'a' && token[0] <= 'z');
+}
+
 Status readFields(Tokens& tokens, Record& record)
 {
-    std::string token;
-    if (!tokens.next(token)) return cutShort("Version");
-    if (tokens.inBrackets() && !tokens.next(token)) return cutShort("Version");
+    std::string token, previous = "Version";
+    std::uint64_t count = 0;
+    if (!tokens.next(token)) return cutShort(previous);
+    if (tokens.inBrackets() && !tokens.next(token)) return cutShort(previous);
     while (token != "End") {
         if (tokens.ended())
-            return Status(ErrorCode::FILE_UNREADABLE, "there is no End after its fields");
-        const Status status = readField(tokens, token, record);
+            return Status(ErrorCode::FILE_UNREADABLE, "there is no End after field " + previous);
+        if (!isName(token)) return tooMany(previous, count);
+        const Status status = readField(tokens, token, record, count);
         if (!status.ok()) return status;
-        if (!tokens.next(token)) return cutShort("End");
+        previous = token;
+        if (!tokens.next(token)) return cutShort(previous);
     }
     if (tokens.inBrackets()) tokens.next(token);
     return Status();
@@ -302,7 +315,7 @@ void writeText(osgDB::OutputStream& os, const Record& record)
     os << os.BEGIN_BRACKET << std::endl;
     for (const Field& field : record.fields()) {
         os << os.PROPERTY(field.name.c_str()) << std::string(kindName(field.value.index()));
-        std::visit(WriteValue{os}, field.value);
+        std::visit(WriteValue{os, field.valuesPerLine}, field.value);
     }
     os << os.PROPERTY("End") << std::endl;
     os << os.END_BRACKET << std::endl;

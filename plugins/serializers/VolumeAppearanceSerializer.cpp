@@ -6,6 +6,8 @@
 
 #include <osgDB/ObjectWrapper>
 
+#include <cmath>
+
 namespace osgVolumizer {
 namespace serializers {
 namespace {
@@ -14,6 +16,21 @@ const char* const techniqueNames[] = {"AUTOMATIC", "SLICES", "SLABS"};
 const char* const interpolationNames[] = {"NEAREST", "LINEAR"};
 const char* const modeNames[] = {"VIEWPORT_ALIGNED", "AXIS_ALIGNED", "SPHERICAL"};
 const char* const spaceNames[] = {"VIEW_VOLUME", "OBJECT", "PRIMITIVE"};
+
+// Finite numbers, above or not below zero.
+Status getLengths(const Record& record, const std::string& name, std::size_t count, bool zero,
+                  Field::Doubles& values)
+{
+    const Status status = record.get(name, count, values);
+    if (!status.ok()) return status;
+    for (std::size_t i = 0; i < count; ++i)
+        if (!std::isfinite(values[i]) || values[i] < 0.0 || (values[i] == 0.0 && !zero))
+            return Status(ErrorCode::VALUE_INVALID,
+                          "field " + name + ", value " + std::to_string(i) + " is " +
+                              std::to_string(values[i]),
+                          std::int64_t(i));
+    return Status();
+}
 
 // Each field by itself: one that is damaged keeps its default, and the first one is reported.
 Status apply(const Record& record, VolumeAppearance& appearance)
@@ -33,11 +50,12 @@ Status apply(const Record& record, VolumeAppearance& appearance)
     if (keep(record.getChoice("SamplingSpace", spaceNames, 3, index)))
         appearance.setSamplingSpace(static_cast<SamplingSpace>(index));
     Field::Doubles values;
-    if (keep(record.get("SamplingPeriod", 3, values)))
+    if (keep(getLengths(record, "SamplingPeriod", 3, false, values)))
         keep(appearance.setSamplingPeriod(osg::Vec3d(values[0], values[1], values[2])));
     if (keep(record.getInteger("MaximumSamples", 1, 2147483647, index)))
         keep(appearance.setMaximumSamples(index));
-    if (keep(record.get("OpacityUnit", 1, values))) keep(appearance.setOpacityUnit(values[0]));
+    if (keep(getLengths(record, "OpacityUnit", 1, true, values)))
+        keep(appearance.setOpacityUnit(values[0]));
     return first;
 }
 

@@ -49,7 +49,8 @@ Status apply(Record& record, VolumeGeometry& geometry)
                                                     " values, no multiple of the " +
                                                     std::to_string(format.stride()) +
                                                     " of a vertex");
-    return geometry.setTetraSet(std::move(set));
+    status = set.validate();
+    return status.ok() ? geometry.setTetraSet(std::move(set)) : status;
 }
 
 bool checkTetraSet(const VolumeGeometry&)
@@ -76,8 +77,8 @@ bool writeTetraSet(osgDB::OutputStream& os, const VolumeGeometry& geometry)
     if (format.layout == core::VertexLayout::USER)
         record.add("Sizes",
                    Field::Integers{format.voxelCoordinateSize, format.colorSize, format.userSize});
-    record.add("Vertices", set->vertices.values());
-    record.add("Tetrahedra", Field::Indices(set->indices));
+    record.add("Vertices", set->vertices.values(), std::size_t(format.stride()));
+    record.add("Tetrahedra", Field::Indices(set->indices), 4);
     writeRecord(os, record);
     return true;
 }

@@ -15,7 +15,7 @@ namespace testing {
 /// alternating parity share the diagonals of their faces.
 inline void addCell(core::TetraSet& set, const core::TetraSet::Index (&c)[8], bool odd)
 {
-    static constexpr int five[20] = {0, 3, 5, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 5, 0, 6, 7, 3, 6, 5};
+    static constexpr int five[20] = {0, 5, 3, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 5, 0, 6, 7, 3, 5, 6};
     // The mirror image in x; the last two change places to keep the orientation.
     for (int i = 0; i < 20; ++i) {
         const int k = odd ? (i % 4 == 2 ? i + 1 : i % 4 == 3 ? i - 1 : i) : i;

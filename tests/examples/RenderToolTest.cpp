@@ -1,8 +1,11 @@
+#include <oracles/ClosedForms.h>
 #include <support/GLTest.h>
 #include <support/PictureFile.h>
 #include <support/Shapes.h>
 
-#include <osg/MatrixTransform>
+#include <osgVolumizer/VolumeAppearance.h>
+#include <osgVolumizer/VolumeGeometry.h>
+
 #include <osgDB/WriteFile>
 
 #include <sys/wait.h>
@@ -123,6 +126,50 @@ TEST_F(RenderToolGLTest, WritesStatistics)
         text, std::regex("\"millisecondsPerFrame\": \\[([0-9.e-]+, ){4}[0-9.e-]+\\]")))
         << text;
     EXPECT_NE(text.find("\"counters\": {"), std::string::npos) << text;
+}
+
+TEST_F(RenderToolGLTest, RendersVolumesAsAsked)
+{
+    // A cube of one colour, 8 units wide, in a scene file.
+    osgVolumizer::VoxelSource::Description d;
+    d.size = glm::ivec3(9);
+    d.origin = glm::dvec3(-4.0);
+    osg::ref_ptr<osgVolumizer::MemoryVoxelSource> source = new osgVolumizer::MemoryVoxelSource;
+    ASSERT_TRUE(source->allocate(d).ok());
+    osg::ref_ptr<osgVolumizer::VolumeAppearance> volume = new osgVolumizer::VolumeAppearance;
+    volume->setVoxels(new osgVolumizer::Voxels(source.get()));
+    const glm::dvec4 color(0.8, 0.4, 0.2, 0.1);
+    ASSERT_TRUE(volume->getLookupTable()
+                    ->setPoints({{0.0, color}}, osgVolumizer::LookupTable::RANGE_FRACTION)
+                    .ok());
+    volume->addChild(osgVolumizer::VolumeGeometry::createBox(*volume->getVoxels()));
+    const std::string scene = file("cube.osgt");
+    ASSERT_TRUE(osgDB::writeNodeFile(*volume, scene));
+
+    const glm::dvec4 expected = osgVolumizer::oracle::constantSegment(color, 8.0);
+    const auto faces = [&](const std::string& options) {
+        const Outcome outcome =
+            runTool(scene + " --size 16 16 --eye 0 -20 0 --ortho 5 " + options + " --output " +
+                    file("cube.exr") + " --stats " + file("cube.json"));
+        EXPECT_EQ(outcome.code, 0) << outcome.text;
+        const auto image = readFloatPicture(file("cube.exr"));
+        EXPECT_TRUE(image.ok()) << image.status.text;
+        if (!image.ok()) return -1.0;
+        for (int c = 0; c < 4; ++c)
+            EXPECT_NEAR(image->at(8, 8)[c], expected[c], 2e-3) << options;
+        EXPECT_EQ(image->at(0, 0), glm::vec4(0.0f)) << options;
+        const std::string text = readText(file("cube.json"));
+        std::smatch match;
+        const std::regex counter("\"counters\": \\{[^}]*\"faces\": ([0-9]+)");
+        EXPECT_TRUE(std::regex_search(text, match, counter)) << text;
+        return match.empty() ? -1.0 : std::stod(match[1]);
+    };
+    const double coarse = faces("--technique slices --period 0.5");
+    const double fine = faces("--technique slices --period 0.25");
+    EXPECT_GT(coarse, 10.0);
+    EXPECT_NEAR(fine, 2.0 * coarse, 3.0);
+    EXPECT_LT(faces("--technique slabs"), coarse);
+    EXPECT_GT(faces("--technique auto"), 0.0);
 }
 
 TEST_F(RenderToolGLTest, FramesTheSceneByItself)

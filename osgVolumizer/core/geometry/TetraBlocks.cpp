@@ -91,6 +91,7 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
         const glm::dvec3 d = set.vertices.position(source[3]) - a;
         if (glm::dot(glm::cross(b, c), d) < 0.0) std::swap(tetrahedra[i].v[0], tetrahedra[i].v[1]);
     }
+    findEdges();
     const std::size_t stride = recordSize() - 1;
     const auto position = static_cast<std::size_t>(_format.positionOffset());
     records.resize(sourceVertices.size() * recordSize());
@@ -99,6 +100,35 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
         double* to = record(i);
         std::copy(from, from + stride, to);
         for (std::size_t a = 0; a < 3; ++a) to[position + a] -= origin[static_cast<int>(a)];
+    }
+}
+
+void TetraBlocks::findEdges()
+{
+    static constexpr int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    edges.clear();
+    tetraEdges.resize(tetrahedra.size());
+    // Number of the edge between two vertices of a block, as stamped by the block.
+    struct Entry
+    {
+        std::uint32_t block;
+        std::uint16_t edge;
+    };
+    std::vector<Entry> table(MAX_VERTICES * MAX_VERTICES, {NONE, 0});
+    for (std::uint32_t i = 0; i < blocks.size(); ++i) {
+        Block& block = blocks[i];
+        block.firstEdge = static_cast<std::uint32_t>(edges.size());
+        for (std::uint32_t t = block.firstTetra; t < block.firstTetra + block.tetraCount; ++t)
+            for (int e = 0; e < 6; ++e) {
+                std::uint8_t a = tetrahedra[t].v[ends[e][0]], b = tetrahedra[t].v[ends[e][1]];
+                if (a > b) std::swap(a, b);
+                Entry& entry = table[a * MAX_VERTICES + b];
+                if (entry.block != i) {
+                    entry = {i, static_cast<std::uint16_t>(block.edgeCount++)};
+                    edges.push_back({a, b});
+                }
+                tetraEdges[t].e[e] = entry.edge;
+            }
     }
 }
 

@@ -11,24 +11,33 @@
 namespace osgVolumizer {
 namespace core {
 
-/// A tetra set cut into blocks of neighbouring tetrahedra with vertices of their own, so that one
+/// A tetra set cut into blocks of neighbouring tetrahedra with vertices and edges of their own, so that one
 /// block stays in the first-level cache, is culled by one box test, and is the unit of work of a
 /// thread. Tetrahedra are taken along a Morton curve; all get positive orientation.
 class OSGVOLUMIZER_CORE_EXPORT TetraBlocks
 {
 public:
     static constexpr std::size_t MAX_VERTICES = 256; ///< of a block: indices are bytes
-    static constexpr std::size_t MAX_TETRAHEDRA = 512;
+    static constexpr std::size_t MAX_TETRAHEDRA = 1024;
 
     struct Block
     {
         std::uint32_t firstVertex = 0, vertexCount = 0;
         std::uint32_t firstTetra = 0, tetraCount = 0;
+        std::uint32_t firstEdge = 0, edgeCount = 0;
         Box3d bounds; ///< of the positions, relative to the origin
     };
     struct Tetra
     {
         std::uint8_t v[4]; ///< vertices of the block
+    };
+    struct TetraEdges
+    {
+        std::uint16_t e[6]; ///< edges of the block: 01 02 03 12 13 23
+    };
+    struct Edge
+    {
+        std::uint8_t a, b; ///< vertices of the block
     };
 
     /// Where a tetrahedron lies among the clip boxes: CLIP, OUTSIDE, or the box that holds all of it
@@ -42,6 +51,8 @@ public:
 
     std::vector<Block> blocks;
     std::vector<Tetra> tetrahedra;
+    std::vector<TetraEdges> tetraEdges;
+    std::vector<Edge> edges;
     std::vector<std::uint32_t> sourceVertices; ///< of each vertex: its number in the tetra set
     std::vector<std::uint32_t> sourceTetrahedra;
     /// Records of recordSize() values: those of the tetra set, positions relative to the origin, and
@@ -72,6 +83,7 @@ public:
 
 private:
     void sortTetrahedra(const TetraSet& set);
+    void findEdges();
     Place placeOf(const BoxIndex& boxes, const Block& block, const Tetra& tetra) const;
 
     VertexFormat _format;

@@ -72,11 +72,13 @@ void RecordPolygon::clipField(int field, double limit, bool above)
 
 void RecordPolygon::clipPlane(int field, const Plane& plane)
 {
-    clip(
-        [field, &plane](const double* r) {
-            return plane.distance({r[field], r[field + 1], r[field + 2]});
-        },
-        0.0, true, [](double*) {});
+    // Of a plane and its negative one is chosen for both sides, so that they get the same points.
+    const glm::dvec3& n = plane.normal;
+    const bool above = n.x != 0.0 ? n.x > 0.0 : n.y != 0.0 ? n.y > 0.0 : n.z >= 0.0;
+    const Plane upper = above ? plane : Plane{-n, -plane.offset};
+    clip([field, &upper](
+             const double* r) { return upper.distance({r[field], r[field + 1], r[field + 2]}); },
+         0.0, above, [](double*) {});
 }
 
 void RecordPolygon::clipBox(int field, const Box3d& box)

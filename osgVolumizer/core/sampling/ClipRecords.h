@@ -57,7 +57,9 @@ public:
     /// Keeps the part with value >= limit (`above`) or value < limit, the value being that of field
     /// `field`. The field is set to the limit exactly in the points that are made.
     void clipField(int field, double limit, bool above);
-    /// Keeps the part in the half-space; `field` is where the three coordinates are.
+    /// Keeps the part in the half-space; `field` is where the three coordinates are. The other side
+    /// of the same plane gets the same points; what lies in the plane belongs to the side that the
+    /// first non-zero coordinate of the normal points to.
     void clipPlane(int field, const Plane& plane);
     /// Keeps the part in the half-open box; `field` is where the three coordinates are.
     void clipBox(int field, const Box3d& box);

@@ -1,5 +1,6 @@
 #include "Polygonize.h"
 
+#include "../geometry/ConvexPieces.h"
 #include "Refine.h"
 #include "Slicer.h"
 #include "SurfaceFamily.h"
@@ -90,6 +91,8 @@ struct Polygonizer::Private
     Status useFunction(const Refiner::Function& depth, double tolerance, const glm::dvec3& origin);
     Status measure();
     Status cut(const SurfaceLattice& lattice, double eyeDepth, PolygonizedFaces& out);
+    Status cutPlane(const Plane& plane, const glm::dvec3& origin,
+                    const std::vector<std::vector<Plane>>* pieces, PolygonizedFaces& out);
 };
 
 Polygonizer::Polygonizer() : _private(new Private) {}
@@ -284,6 +287,59 @@ Status Polygonizer::polygonize(const SurfaceFamily& family, const SamplingParame
         return s;
     out.axis = -1;
     return {};
+}
+
+Status Polygonizer::Private::cutPlane(const Plane& plane, const glm::dvec3& origin,
+                                      const std::vector<std::vector<Plane>>* pieces,
+                                      PolygonizedFaces& out)
+{
+    const glm::dvec3& n = plane.normal;
+    const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+    if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(plane.offset / length))
+        return {ErrorCode::VALUE_INVALID, "polygonizeMPR: the plane's normal has length " +
+                                              std::to_string(length) + "."};
+    SamplingParameters parameters;
+    parameters.outputOrigin = origin;
+    if (Status s = parameters.validate(); !s) return s;
+    if (Status s = prepareBlocks(origin); !s) return s;
+    plan.blocks = &blocks;
+    plan.depths = nullptr;
+    plan.gradient = n / -length;
+    plan.depthField = tetraSet->vertices.format().positionOffset();
+    plan.corner = n * (-plane.offset / (length * length)) - origin;
+    plan.primitive = false;
+    plan.pieces = pieces;
+    plan.visible.clear();
+    if (Status s = measure(); !s) return s;
+    // One layer, with the plane in its middle.
+    SurfaceLattice lattice;
+    lattice.farDepth = 0.5;
+    lattice.count = 1;
+    Status s = cut(lattice, NONE, out);
+    plan.pieces = nullptr;
+    if (!s) return s;
+    out.axis = -1;
+    out.spacing = 0.0;
+    return {};
+}
+
+Status Polygonizer::polygonizeMPR(const Plane& plane, const glm::dvec3& outputOrigin,
+                                  PolygonizedFaces& out)
+{
+    return _private->cutPlane(plane, outputOrigin, nullptr, out);
+}
+
+Status Polygonizer::polygonizeMPR(const std::vector<glm::dvec3>& polygon,
+                                  const glm::dvec3& outputOrigin, PolygonizedFaces& out)
+{
+    Plane plane;
+    std::vector<std::vector<Plane>> pieces;
+    if (Status s = convexPieces(polygon, plane, pieces); !s) return s;
+    for (std::vector<Plane>& piece : pieces)
+        for (Plane& p : piece)
+            p.offset += p.normal.x * outputOrigin.x + p.normal.y * outputOrigin.y +
+                        p.normal.z * outputOrigin.z;
+    return _private->cutPlane(plane, outputOrigin, &pieces, out);
 }
 
 Status polygonize(const TetraSet& tetraSet, const std::vector<Box3d>& clipBoxes, const View& view,

@@ -19,7 +19,7 @@ void append(const SlicePlan& plan, const RecordPolygon& face, std::size_t bin, d
     for (std::size_t i = 0; i < face.size(); ++i)
         for (std::size_t k = 0; k < stride; ++k) *to++ = static_cast<float>(face.record(i)[k]);
     chunk.bins.push_back(static_cast<std::uint32_t>(bin));
-    chunk.sizes.push_back(static_cast<std::uint8_t>(face.size()));
+    chunk.sizes.push_back(static_cast<std::uint16_t>(face.size()));
     if (plan.primitive) chunk.spacings.push_back(static_cast<float>(spacing));
 }
 
@@ -94,7 +94,18 @@ void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
         if (plan.primitive)
             surface = std::min(plan.firstSurface + plan.surfaceCount - 1,
                                std::max(plan.firstSurface, static_cast<int>(low + (k + 0.5) / scale)));
-        clipFace(plan, surface, plan.lattice.spacing / scale, chunk);
+        const double spacing = plan.lattice.spacing / scale;
+        if (!plan.pieces) {
+            clipFace(plan, surface, spacing, chunk);
+            continue;
+        }
+        chunk.uncut.assign(chunk.whole);
+        for (const std::vector<Plane>& piece : *plan.pieces) {
+            chunk.whole.assign(chunk.uncut);
+            for (std::size_t i = 0; i < piece.size() && chunk.whole.size() > 0; ++i)
+                chunk.whole.clipPlane(blocks.format().positionOffset(), piece[i]);
+            if (chunk.whole.size() >= 3) clipFace(plan, surface, spacing, chunk);
+        }
     }
 }
 

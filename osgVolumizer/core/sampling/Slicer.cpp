@@ -3,12 +3,9 @@
 #include "TetraCases.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <new>
 #include <string>
-
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
 
 namespace osgVolumizer {
 namespace core {
@@ -17,31 +14,6 @@ namespace {
 
 constexpr std::size_t MAX_BINS = std::size_t(1) << 24;
 constexpr std::size_t BLOCKS_PER_CHUNK = 8; ///< fewer are not worth a task
-
-/// Which vertices of a tetrahedron lie on the near side of surface k.
-#if defined(__SSE2__)
-struct Passed
-{
-    __m128i v;
-    Passed(int a, int b, int c, int d) : v(_mm_set_epi32(d, c, b, a)) {}
-    unsigned beyond(int k) const
-    {
-        return static_cast<unsigned>(
-            _mm_movemask_ps(_mm_castsi128_ps(_mm_cmpgt_epi32(v, _mm_set1_epi32(k)))));
-    }
-};
-#else
-struct Passed
-{
-    int v[4];
-    Passed(int a, int b, int c, int d) : v{a, b, c, d} {}
-    unsigned beyond(int k) const
-    {
-        return (v[0] > k ? 1u : 0u) | (v[1] > k ? 2u : 0u) | (v[2] > k ? 4u : 0u) |
-               (v[3] > k ? 8u : 0u);
-    }
-};
-#endif
 
 /// Corners of the face of a case: 4 where two vertices are on either side, else 3.
 std::uint32_t faceSize(std::uint64_t mask) { return 3u + ((0x1668u >> mask) & 1u); }
@@ -72,7 +44,7 @@ bool flushFace(const TetraBlocks& blocks, const TetraBlocks::Block& block,
 
 } // namespace
 
-void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t blockIndex) const
+void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t blockIndex)
 {
     TetraBlocks& blocks = *plan.blocks;
     const TetraBlocks::Block& block = blocks.blocks[blockIndex];
@@ -80,7 +52,7 @@ void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block
     const std::size_t size = blocks.recordSize();
     const int first = plan.firstSurface, last = first + plan.surfaceCount;
     const double scale = 1.0 / plan.lattice.spacing;
-    int passed[TetraBlocks::MAX_VERTICES];
+    int* passed = _passed.data() + block.firstVertex;
     int lowest = last, highest = first;
     double* record = blocks.record(block.firstVertex);
     for (std::uint32_t i = 0; i < block.vertexCount; ++i, record += size) {
@@ -92,51 +64,41 @@ void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block
         lowest = std::min(lowest, passed[i]);
         highest = std::max(highest, passed[i]);
     }
-    if (lowest == highest && !plan.primitive) return;
+    if (lowest == highest && !plan.primitive) return; // PRIMITIVE has layers of its own
 
+    const std::size_t start = chunk.entryCount;
     const TetraBlocks::Tetra* tetra = blocks.tetrahedra.data() + block.firstTetra;
     const TetraBlocks::Place* place =
         blocks.places.empty() ? nullptr : blocks.places.data() + block.firstTetra;
-    for (std::uint32_t t = 0; t < block.tetraCount; ++t) {
-        const TetraBlocks::Tetra& v = tetra[t];
-        const int a = passed[v.v[0]], b = passed[v.v[1]], c = passed[v.v[2]], d = passed[v.v[3]];
-        const int low = std::min(std::min(a, b), std::min(c, d));
-        const int high = std::max(std::max(a, b), std::max(c, d));
-        if (place || plan.primitive) {
+    if (!place && !plan.general()) {
+        listFaces(tetra, 0, block.tetraCount, passed, chunk);
+    } else {
+        // Runs of tetrahedra that are whole in their boxes go the fast way.
+        std::uint32_t runStart = 0;
+        for (std::uint32_t t = 0; t < block.tetraCount; ++t) {
             const TetraBlocks::Place p = place ? place[t] : 0;
-            if (p == TetraBlocks::OUTSIDE || (low == high && !plan.primitive)) continue;
-            const unsigned faces = p >> TetraBlocks::FACE_SHIFT;
-            if (p == TetraBlocks::CLIP || plan.primitive ||
-                (faces && flushFace(blocks, block, v, faces))) {
-                clipTetra(plan, block, v, chunk);
-                continue;
-            }
+            const bool flush = p < TetraBlocks::OUTSIDE && p > TetraBlocks::BOX_MASK &&
+                               flushFace(blocks, block, tetra[t], p >> TetraBlocks::FACE_SHIFT);
+            if (p < TetraBlocks::OUTSIDE && !flush && !plan.general()) continue;
+            listFaces(tetra, runStart, t - runStart, passed, chunk);
+            runStart = t + 1;
+            if (p != TetraBlocks::OUTSIDE) clipTetra(plan, block, tetra[t], chunk);
         }
-        // Two entries are written whether they are needed or not: most tetrahedra meet none, one or two
-        // surfaces, and a branch on the number would be mispredicted half of the time.
-        const auto n = static_cast<std::size_t>(high - low);
-        if (chunk.entries.size() < chunk.entryCount + n + 2)
-            chunk.entries.resize(2 * chunk.entries.size() + n + 1024);
-        std::uint64_t* e = chunk.entries.data() + chunk.entryCount;
-        const Passed four(a, b, c, d);
-        const std::uint64_t bits = std::uint64_t(t) << 8;
-        e[0] = std::uint64_t(std::uint32_t(low)) << 32 | bits | four.beyond(low);
-        e[1] = std::uint64_t(std::uint32_t(low + 1)) << 32 | bits | four.beyond(low + 1);
-        for (std::size_t k = 2; k < n; ++k) {
-            const int s = low + static_cast<int>(k);
-            e[k] = std::uint64_t(std::uint32_t(s)) << 32 | bits | four.beyond(s);
-        }
-        chunk.entryCount += n;
+        listFaces(tetra, runStart, block.tetraCount - runStart, passed, chunk);
     }
+    if (chunk.entryCount > start)
+        chunk.vertexCount +=
+            countPoints(blocks.edges.data() + block.firstEdge, block.edgeCount, passed);
 }
 
-void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk) const
+void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
 {
     const std::size_t bins = static_cast<std::size_t>(plan.surfaceCount) *
                              static_cast<std::size_t>(plan.brickCount);
     chunk.fast.assign(bins, 0);
     chunk.clipped.assign(bins, 0);
     chunk.entryCount = 0;
+    chunk.vertexCount = 0;
     chunk.blockEntries.clear();
     chunk.bins.clear();
     chunk.sizes.clear();
@@ -147,7 +109,7 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk) const
     for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
         const std::size_t start = chunk.entryCount;
         countBlock(plan, chunk, b);
-        chunk.blockEntries.push_back(static_cast<std::uint32_t>(chunk.entryCount));
+        chunk.blockEntries.push_back(chunk.entryCount);
         const std::uint32_t firstTetra = blocks.blocks[b].firstTetra;
         for (std::size_t i = start; i < chunk.entryCount; ++i) {
             const std::uint64_t e = chunk.entries[i];
@@ -165,16 +127,23 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk) const
 
 bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, PolygonizedFaces& out)
 {
-    std::uint64_t vertices = 0, faces = 0;
-    for (std::size_t c = 0; c < chunkCount; ++c) {
-        for (const Count n : _chunks[c].fast) vertices += vertexCount(n), faces += faceCount(n);
-        for (const Count n : _chunks[c].clipped) vertices += vertexCount(n), faces += faceCount(n);
-    }
-    if (vertices > 0xffffffffu) return false;
+    std::uint64_t indices = 0, faces = 0, vertices = 0;
     const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
+    for (std::size_t c = 0; c < chunkCount; ++c) {
+        for (const Count n : _chunks[c].fast) indices += indexCount(n), faces += faceCount(n);
+        for (const Count n : _chunks[c].clipped) indices += indexCount(n), faces += faceCount(n);
+        const std::size_t own = _chunks[c].vertexCount;
+        _chunks[c].vertexCount = vertices;
+        vertices += own;
+    }
+    for (std::size_t c = 0; c < chunkCount; ++c) {
+        _chunks[c].clippedVertex = vertices;
+        vertices += _chunks[c].vertices.size() / stride;
+    }
+    if (indices > 0xffffffffu || vertices > 0xffffffffu) return false;
     out.faces.format = plan.blocks->format();
     out.faces.vertices.resize(vertices * stride);
-    out.faces.indices.resize(vertices);
+    out.faces.indices.resize(indices);
     out.faces.faceOffsets.resize(faces + 1);
     out.faceSpacings.resize(plan.primitive ? faces : 0);
     out.ranges.resize(static_cast<std::size_t>(plan.surfaceCount) *
@@ -192,27 +161,73 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
             _chunks[c].clipped[bin] = at;
             at += n;
         }
-        out.ranges[bin] = {faceCount(start), faceCount(at) - faceCount(start), vertexCount(start),
-                           vertexCount(at) - vertexCount(start)};
+        out.ranges[bin] = {faceCount(start), faceCount(at) - faceCount(start), indexCount(start),
+                           indexCount(at) - indexCount(start)};
     }
-    out.faces.faceOffsets[faces] = static_cast<std::uint32_t>(vertices);
+    out.faces.faceOffsets[faces] = static_cast<std::uint32_t>(indices);
     return true;
 }
 
 void Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
 {
-    const SliceTarget target{out.faces.vertices.data(), out.faces.faceOffsets.data()};
-    emitFaces(plan, chunk, target);
+    const TetraBlocks& blocks = *plan.blocks;
+    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
+    std::uint32_t* const indices = out.faces.indices.data();
+    std::uint32_t* const faceOffsets = out.faces.faceOffsets.data();
+    Count* const cursors = chunk.fast.data();
+    const int* const rank = plan.rank - plan.firstSurface;
+    std::size_t i = 0;
+    for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
+        const std::size_t end = chunk.blockEntries[b - chunk.firstBlock];
+        if (i == end) continue;
+        const TetraBlocks::Block& block = blocks.blocks[b];
+        listPoints(blocks.edges.data() + block.firstEdge, block.edgeCount,
+                   _passed.data() + block.firstVertex, chunk);
+        writePoints(blocks, block, chunk,
+                    out.faces.vertices.data() + chunk.vertexCount * (blocks.recordSize() - 1));
+        chunk.vertexCount += chunk.pointCount;
+
+        const TetraBlocks::TetraEdges* tetraEdges = blocks.tetraEdges.data() + block.firstTetra;
+        const TetraBlocks::Place* places =
+            blocks.places.empty() ? nullptr : blocks.places.data() + block.firstTetra;
+        const std::uint32_t* edgePoints = chunk.edgePoints.data();
+        const std::uint64_t* entries = chunk.entries.data();
+        for (; i < end; ++i) {
+            const std::uint64_t e = entries[i];
+            const auto surface = static_cast<std::uint32_t>(e >> 32);
+            const std::size_t t = e >> 8 & 0xffffffu;
+            const TetraCase& which = TETRA_CASES[e & 15u];
+            std::size_t bin = std::size_t(static_cast<std::uint32_t>(rank[surface])) * brickCount;
+            if (places) bin += places[t] & TetraBlocks::BOX_MASK;
+            const Count cursor = cursors[bin];
+            cursors[bin] = cursor + count(1, static_cast<std::uint32_t>(which.count));
+            faceOffsets[faceCount(cursor)] = indexCount(cursor);
+            std::uint32_t* to = indices + indexCount(cursor);
+            const std::uint16_t* edges = tetraEdges[t].e;
+            to[0] = edgePoints[edges[which.edge[0]]] + surface;
+            to[1] = edgePoints[edges[which.edge[1]]] + surface;
+            to[2] = edgePoints[edges[which.edge[2]]] + surface;
+            // Of a triangle the last corner is the third once more.
+            to[which.count - 1] = edgePoints[edges[which.edge[3]]] + surface;
+        }
+    }
+    emitClipped(plan, chunk, out);
+}
+
+void Slicer::emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
+{
     const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
-    const float* from = chunk.vertices.data();
+    std::copy(chunk.vertices.begin(), chunk.vertices.end(),
+              out.faces.vertices.begin() +
+                  static_cast<std::ptrdiff_t>(chunk.clippedVertex * stride));
+    auto vertex = static_cast<std::uint32_t>(chunk.clippedVertex);
     for (std::size_t f = 0; f < chunk.bins.size(); ++f) {
         Count& cursor = chunk.clipped[chunk.bins[f]];
-        const std::size_t size = chunk.sizes[f] * stride;
-        std::copy(from, from + size, target.vertices + vertexCount(cursor) * stride);
-        target.faceOffsets[faceCount(cursor)] = vertexCount(cursor);
+        out.faces.faceOffsets[faceCount(cursor)] = indexCount(cursor);
         if (plan.primitive) out.faceSpacings[faceCount(cursor)] = chunk.spacings[f];
+        for (std::uint32_t k = 0; k < chunk.sizes[f]; ++k)
+            out.faces.indices[indexCount(cursor) + k] = vertex++;
         cursor += count(1, chunk.sizes[f]);
-        from += size;
     }
 }
 
@@ -239,18 +254,11 @@ try {
         else
             executor->run(static_cast<int>(chunkCount), std::cref(task));
     };
+    _passed.resize(plan.blocks->sourceVertices.size());
     forAll([&](int c) { countChunk(plan, _chunks[static_cast<std::size_t>(c)]); });
     if (!placeBins(plan, chunkCount, out))
-        return {ErrorCode::TOO_LARGE, "polygonize: the faces have more than 2^32 vertices."};
-    forAll([&](int c) {
-        emitChunk(plan, _chunks[static_cast<std::size_t>(c)], out);
-        // Faces do not share vertices, and both are in the same order.
-        const std::size_t n = out.faces.indices.size();
-        const std::size_t begin = n * static_cast<std::size_t>(c) / chunkCount;
-        const std::size_t end = n * static_cast<std::size_t>(c + 1) / chunkCount;
-        std::uint32_t* indices = out.faces.indices.data();
-        for (std::size_t i = begin; i < end; ++i) indices[i] = static_cast<std::uint32_t>(i);
-    });
+        return {ErrorCode::TOO_LARGE, "polygonize: the faces have more than 2^32 corners."};
+    forAll([&](int c) { emitChunk(plan, _chunks[static_cast<std::size_t>(c)], out); });
     return {};
 } catch (const std::bad_alloc&) {
     return {ErrorCode::TOO_LARGE, "polygonize: the faces do not fit in memory."};

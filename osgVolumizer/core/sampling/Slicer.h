@@ -29,13 +29,18 @@ struct SlicePlan
     const int* rank = nullptr;              ///< place in the output of surface firstSurface + i
     int brickCount = 1;
     bool primitive = false;
+    /// Convex pieces, as half-spaces relative to the origin, that faces are cut down to; or null.
+    const std::vector<std::vector<Plane>>* pieces = nullptr;
+    /// Whether every face needs the general way.
+    bool general() const { return primitive || pieces; }
     /// Blocks that lie outside one of these half-spaces are left out.
     std::vector<Plane> visible;
 };
 
 /// Cuts blocks of tetrahedra in two passes: the first finds out which surfaces meet which tetrahedra
-/// and counts, the second writes every face to its final place. Tetrahedra that need clipping are
-/// cut in the first pass already and copied in the second. All memory is kept.
+/// and counts, the second writes points and faces to their final places. In a block every point is
+/// made once, on its edge, and shared by the faces around that edge. Tetrahedra that need clipping
+/// are cut in the first pass already and copied in the second. All memory is kept.
 class Slicer
 {
 public:
@@ -51,14 +56,14 @@ public:
                plan.gradient.z * (p[2] - plan.corner.z);
     }
 
-    /// Faces and vertices of a bin in one number, so that one addition counts both.
+    /// Faces and indices of a bin in one number, so that one addition counts both.
     using Count = std::uint64_t;
-    static constexpr Count count(std::uint32_t faces, std::uint32_t vertices)
+    static constexpr Count count(std::uint32_t faces, std::uint32_t indices)
     {
-        return Count(faces) << 32 | vertices;
+        return Count(faces) << 32 | indices;
     }
     static std::uint32_t faceCount(Count c) { return static_cast<std::uint32_t>(c >> 32); }
-    static std::uint32_t vertexCount(Count c) { return static_cast<std::uint32_t>(c); }
+    static std::uint32_t indexCount(Count c) { return static_cast<std::uint32_t>(c); }
 
     /// The share of one thread: neighbouring blocks.
     struct Chunk
@@ -67,34 +72,50 @@ public:
         /// Faces to make, block after block: surface << 32 | tetrahedron of the block << 8 | case.
         std::vector<std::uint64_t> entries;
         std::size_t entryCount = 0;
-        std::vector<std::uint32_t> blockEntries; ///< per block, the end of its entries
-        std::vector<Count> fast, clipped;        ///< per bin: first counts, then cursors
+        /// Per block, the end of its entries; points are made only where there are any.
+        std::vector<std::size_t> blockEntries;
+        std::vector<Count> fast, clipped; ///< per bin: first counts, then cursors
+        std::size_t vertexCount = 0;      ///< shared points, first their number, then the next
+        std::size_t clippedVertex = 0;    ///< where the points of clipped faces begin
         // Faces that were clipped, in the order of making.
         std::vector<std::uint32_t> bins;
-        std::vector<std::uint8_t> sizes;
+        std::vector<std::uint16_t> sizes;
         std::vector<float> vertices;
         std::vector<float> spacings;
-        RecordPolygon whole, part;
+        RecordPolygon whole, part, uncut;
+        // Scratch of one block: its points (surface << 32 | near vertex << 8 | far vertex), and for
+        // each edge the number of its point on surface 0, if it had one.
+        std::vector<std::uint64_t> points;
+        std::size_t pointCount = 0;
+        std::vector<std::uint32_t> edgePoints;
     };
 
 private:
-    void countChunk(const SlicePlan& plan, Chunk& chunk) const;
-    void countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block) const;
+    void countChunk(const SlicePlan& plan, Chunk& chunk);
+    void countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block);
     bool placeBins(const SlicePlan& plan, std::size_t chunkCount, PolygonizedFaces& out);
     void emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
+    void emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
 
     std::vector<Chunk> _chunks;
+    std::vector<int> _passed; ///< per vertex of the blocks: surfaces on the near side of which it is
 };
 
-/// Where emitFaces() writes.
-struct SliceTarget
-{
-    float* vertices;
-    std::uint32_t* faceOffsets;
-};
+/// Appends an entry to the chunk for every surface that meets one of `count` tetrahedra of a block,
+/// beginning with number `first`. `passed` belongs to the block's vertices.
+void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t first, std::uint32_t count,
+               const int* passed, Slicer::Chunk& chunk);
 
-/// Makes the faces of `chunk.entries`, in vector registers as wide as the processor has.
-void emitFaces(const SlicePlan& plan, Slicer::Chunk& chunk, const SliceTarget& target);
+/// How many points the edges of a block get.
+std::size_t countPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed);
+
+/// Fills chunk.points and chunk.edgePoints for the edges of a block.
+void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed,
+                Slicer::Chunk& chunk);
+
+/// Makes chunk.points, in vector registers as wide as the processor has.
+void writePoints(const TetraBlocks& blocks, const TetraBlocks::Block& block,
+                 const Slicer::Chunk& chunk, float* to);
 
 /// Cuts one tetrahedron the general way, clips the faces to the boxes and appends them to the chunk.
 /// Expects the layer coordinates in the records.

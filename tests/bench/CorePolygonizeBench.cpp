@@ -1,0 +1,117 @@
+// How fast polygonize() is, against the limit that memory sets: memcpy of as many bytes as the
+// faces have, in the same run. Counters: polygons per second, bytes per second, and the part of the
+// speed of memcpy. Arguments of the program are those of Google Benchmark.
+
+#include "osgVolumizer/core/Parallel.h"
+#include "osgVolumizer/core/sampling/Polygonize.h"
+#include "tests/core/TestGeometry.h"
+
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cstring>
+#include <memory>
+
+using namespace osgVolumizer;
+using namespace osgVolumizer::core;
+
+namespace {
+
+std::size_t bytesOf(const PolygonizedFaces& f)
+{
+    return f.faces.vertices.size() * sizeof(float) +
+           (f.faces.indices.size() + f.faces.faceOffsets.size()) * sizeof(std::uint32_t);
+}
+
+double seconds(std::chrono::steady_clock::time_point since)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+}
+
+/// Bytes per second of memcpy of the same amount, the best of several.
+double memcpySpeed(std::size_t bytes)
+{
+    std::vector<char> from(bytes, 1), to(bytes, 2);
+    double best = 1e9;
+    for (int i = 0; i < 9; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        std::memcpy(to.data(), from.data(), bytes);
+        benchmark::ClobberMemory();
+        best = std::min(best, seconds(start));
+    }
+    return static_cast<double>(bytes) / best;
+}
+
+std::vector<Box3d> bricks(int n, double size)
+{
+    std::vector<Box3d> r;
+    const double step = size / n;
+    for (int z = 0; z < n; ++z)
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x)
+                r.push_back({glm::dvec3(x, y, z) * step, glm::dvec3(x + 1, y + 1, z + 1) * step});
+    return r;
+}
+
+View benchView()
+{
+    View v = testing::viewAlong({1, 2, 3});
+    return v;
+}
+
+void run(benchmark::State& state, TetraSet tetra, const std::vector<Box3d>& boxes,
+         SamplingParameters parameters, int threads = 1)
+{
+    Polygonizer polygonizer;
+    ThreadPool pool(threads);
+    if (threads > 1) polygonizer.setExecutor(&pool);
+    PolygonizedFaces out;
+    if (!polygonizer.setTetraSet(std::make_shared<const TetraSet>(std::move(tetra))).ok() ||
+        !polygonizer.setClipBoxes(boxes).ok() ||
+        !polygonizer.polygonize(benchView(), parameters, out).ok()) {
+        state.SkipWithError("polygonize");
+        return;
+    }
+    double best = 1e9;
+    for (auto _ : state) {
+        const auto start = std::chrono::steady_clock::now();
+        polygonizer.polygonize(benchView(), parameters, out);
+        best = std::min(best, seconds(start));
+    }
+    const auto polygons = static_cast<double>(out.faces.faceCount());
+    const auto bytes = static_cast<double>(bytesOf(out));
+    state.counters["polygons"] = polygons;
+    state.counters["bytes/polygon"] = bytes / polygons;
+    state.counters["polygons/s"] = polygons / best;
+    state.counters["of_memcpy"] = bytes / best / memcpySpeed(bytesOf(out));
+}
+
+void gridV3F(benchmark::State& state)
+{
+    run(state, testing::makeGrid(64, 64.0), {}, {}, static_cast<int>(state.range(0)));
+}
+BENCHMARK(gridV3F)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void gridBricks(benchmark::State& state)
+{
+    TetraSet grid = testing::makeGrid(64, 64.0, VertexFormat(VertexLayout::T3F_C4F_V3F));
+    for (std::size_t i = 0; i < grid.vertices.size(); ++i)
+        grid.vertices.setVoxelCoordinate(i, grid.vertices.position(i));
+    // Bricks that agree with the cells, or that cut through them.
+    run(state, std::move(grid), bricks(4, state.range(0) ? 64.0 : 63.0), {});
+}
+BENCHMARK(gridBricks)->Arg(1)->Arg(0)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void boxWith512Planes(benchmark::State& state)
+{
+    SamplingParameters p;
+    p.periodVoxel = glm::dvec3(1e-3);
+    p.maximumSamples = 512;
+    run(state, testing::makeBox(glm::dvec3(0.0), glm::dvec3(64.0)),
+        {{glm::dvec3(0.0), glm::dvec3(64.0)}}, p);
+}
+BENCHMARK(boxWith512Planes)->Unit(benchmark::kMicrosecond);
+
+} // namespace
+
+BENCHMARK_MAIN();
