@@ -16,7 +16,10 @@ constexpr std::size_t MAX_BINS = std::size_t(1) << 24;
 constexpr std::size_t BLOCKS_PER_CHUNK = 8; ///< fewer are not worth a task
 
 /// Corners of the face of a case: 4 where two vertices are on either side, else 3.
-std::uint32_t faceSize(std::uint64_t mask) { return 3u + ((0x1668u >> mask) & 1u); }
+std::uint32_t faceSize(std::uint64_t mask)
+{
+    return 3u + ((0x1668u >> mask) & 1u);
+}
 
 bool outside(const Box3d& box, const std::vector<Plane>& visible)
 {
@@ -37,7 +40,8 @@ bool flushFace(const TetraBlocks& blocks, const TetraBlocks::Block& block,
     for (int k = 0; k < 4; ++k)
         f[k] = blocks.record(block.firstVertex + t.v[k])[blocks.recordSize() - 1];
     for (int i = 0; i < 4; ++i)
-        if ((faces >> i & 1u) && f[(i + 1) % 4] == f[(i + 2) % 4] && f[(i + 1) % 4] == f[(i + 3) % 4])
+        if ((faces >> i & 1u) && f[(i + 1) % 4] == f[(i + 2) % 4] &&
+            f[(i + 1) % 4] == f[(i + 3) % 4])
             return true;
     return false;
 }
@@ -56,8 +60,7 @@ void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block
     int lowest = last, highest = first;
     double* record = blocks.record(block.firstVertex);
     for (std::uint32_t i = 0; i < block.vertexCount; ++i, record += size) {
-        const double depth =
-            depthOf(plan, record, blocks.sourceVertices[block.firstVertex + i]);
+        const double depth = depthOf(plan, record, blocks.sourceVertices[block.firstVertex + i]);
         const double f = (plan.lattice.farDepth - depth) * scale;
         record[size - 1] = f;
         passed[i] = surfacesPassed(f, first, last);
@@ -93,8 +96,8 @@ void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block
 
 void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
 {
-    const std::size_t bins = static_cast<std::size_t>(plan.surfaceCount) *
-                             static_cast<std::size_t>(plan.brickCount);
+    const std::size_t bins =
+        static_cast<std::size_t>(plan.surfaceCount) * static_cast<std::size_t>(plan.brickCount);
     chunk.fast.assign(bins, 0);
     chunk.clipped.assign(bins, 0);
     chunk.entryCount = 0;
@@ -113,8 +116,8 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
         const std::uint32_t firstTetra = blocks.blocks[b].firstTetra;
         for (std::size_t i = start; i < chunk.entryCount; ++i) {
             const std::uint64_t e = chunk.entries[i];
-            const auto surface = static_cast<std::size_t>((e >> 32)) -
-                                 static_cast<std::size_t>(plan.firstSurface);
+            const auto surface =
+                static_cast<std::size_t>((e >> 32)) - static_cast<std::size_t>(plan.firstSurface);
             std::size_t bin = static_cast<std::uint32_t>(plan.rank[surface]) * brickCount;
             if (!blocks.places.empty())
                 bin += blocks.places[firstTetra + (e >> 8 & 0xffffffu)] & TetraBlocks::BOX_MASK;
@@ -130,8 +133,10 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
     std::uint64_t indices = 0, faces = 0, vertices = 0;
     const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
     for (std::size_t c = 0; c < chunkCount; ++c) {
-        for (const Count n : _chunks[c].fast) indices += indexCount(n), faces += faceCount(n);
-        for (const Count n : _chunks[c].clipped) indices += indexCount(n), faces += faceCount(n);
+        for (const Count n : _chunks[c].fast)
+            indices += indexCount(n), faces += faceCount(n);
+        for (const Count n : _chunks[c].clipped)
+            indices += indexCount(n), faces += faceCount(n);
         const std::size_t own = _chunks[c].vertexCount;
         _chunks[c].vertexCount = vertices;
         vertices += own;
@@ -233,8 +238,8 @@ void Slicer::emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& 
 
 Status Slicer::run(const SlicePlan& plan, Executor* executor, PolygonizedFaces& out)
 try {
-    const std::size_t bins = static_cast<std::size_t>(plan.surfaceCount) *
-                             static_cast<std::size_t>(plan.brickCount);
+    const std::size_t bins =
+        static_cast<std::size_t>(plan.surfaceCount) * static_cast<std::size_t>(plan.brickCount);
     if (bins > MAX_BINS)
         return {ErrorCode::TOO_LARGE, "polygonize: " + std::to_string(plan.surfaceCount) +
                                           " surfaces times " + std::to_string(plan.brickCount) +
@@ -243,14 +248,16 @@ try {
     const std::size_t blockCount = plan.blocks->blocks.size();
     std::size_t chunkCount = executor ? static_cast<std::size_t>(executor->concurrency()) : 1;
     chunkCount = std::min(chunkCount, blockCount / BLOCKS_PER_CHUNK);
-    chunkCount = std::max<std::size_t>(1, std::min(chunkCount, MAX_BINS / std::max<std::size_t>(1, bins)));
+    chunkCount =
+        std::max<std::size_t>(1, std::min(chunkCount, MAX_BINS / std::max<std::size_t>(1, bins)));
     if (_chunks.size() < chunkCount) _chunks.resize(chunkCount);
     for (std::size_t c = 0; c < chunkCount; ++c) {
         _chunks[c].firstBlock = static_cast<std::uint32_t>(blockCount * c / chunkCount);
         _chunks[c].endBlock = static_cast<std::uint32_t>(blockCount * (c + 1) / chunkCount);
     }
     const auto forAll = [&](const auto& task) {
-        if (chunkCount == 1) task(0);
+        if (chunkCount == 1)
+            task(0);
         else
             executor->run(static_cast<int>(chunkCount), std::cref(task));
     };

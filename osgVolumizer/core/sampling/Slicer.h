@@ -19,7 +19,8 @@ struct SlicePlan
 {
     TetraBlocks* blocks = nullptr; ///< the spare value of each record receives the layer coordinate
     const BoxIndex* boxes = nullptr;
-    /// Depth of a vertex: dot(gradient, field - corner), unless `depths` gives it per source vertex.
+    /// Depth of a vertex: dot(gradient, field - corner), unless `depths` gives it per source
+    /// vertex.
     int depthField = 0;
     glm::dvec3 gradient{0.0};
     glm::dvec3 corner{0.0};
@@ -37,10 +38,10 @@ struct SlicePlan
     std::vector<Plane> visible;
 };
 
-/// Cuts blocks of tetrahedra in two passes: the first finds out which surfaces meet which tetrahedra
-/// and counts, the second writes points and faces to their final places. In a block every point is
-/// made once, on its edge, and shared by the faces around that edge. Tetrahedra that need clipping
-/// are cut in the first pass already and copied in the second. All memory is kept.
+/// Cuts blocks of tetrahedra in two passes: the first finds out which surfaces meet which
+/// tetrahedra and counts, the second writes points and faces to their final places. In a block
+/// every point is made once, on its edge, and shared by the faces around that edge. Tetrahedra that
+/// need clipping are cut in the first pass already and copied in the second. All memory is kept.
 class Slicer
 {
 public:
@@ -98,7 +99,8 @@ private:
     void emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
 
     std::vector<Chunk> _chunks;
-    std::vector<int> _passed; ///< per vertex of the blocks: surfaces on the near side of which it is
+    std::vector<int>
+        _passed; ///< per vertex of the blocks: surfaces on the near side of which it is
 };
 
 /// Appends an entry to the chunk for every surface that meets one of `count` tetrahedra of a block,
@@ -117,13 +119,13 @@ void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* 
 void writePoints(const TetraBlocks& blocks, const TetraBlocks::Block& block,
                  const Slicer::Chunk& chunk, float* to);
 
-/// Cuts one tetrahedron the general way, clips the faces to the boxes and appends them to the chunk.
-/// Expects the layer coordinates in the records.
+/// Cuts one tetrahedron the general way, clips the faces to the boxes and appends them to the
+/// chunk. Expects the layer coordinates in the records.
 void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
                const TetraBlocks::Tetra& tetra, Slicer::Chunk& chunk);
 
-/// Number of surfaces on the near side of which a vertex with layer coordinate f lies. Surface k is at
-/// k + 1/2, and a vertex on it belongs to its far side. The subtraction is exact wherever the
+/// Number of surfaces on the near side of which a vertex with layer coordinate f lies. Surface k is
+/// at k + 1/2, and a vertex on it belongs to its far side. The subtraction is exact wherever the
 /// result matters: for f in [1/4, 1] by Sterbenz' lemma, above because f - 1/2 has no finer
 /// digits than f.
 inline int surfacesPassed(double f, int first, int last)
