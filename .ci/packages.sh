@@ -1,7 +1,7 @@
 # Sourced by tests/run.sh and examples/demo.sh: install_missing PACKAGE... installs those Debian
 # packages that are not there, and calls apt-get only if there are any.
 
-BUILD_PACKAGES="g++ cmake ninja-build libopenscenegraph-dev libglm-dev libopenimageio-dev openimageio-tools"
+BUILD_PACKAGES="g++ cmake ninja-build libopenscenegraph-dev libglm-dev libopenimageio-dev openimageio-tools libegl-dev libopengl-dev libegl-mesa0"
 
 install_missing() {
     command -v dpkg-query >/dev/null || {

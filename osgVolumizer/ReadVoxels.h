@@ -4,17 +4,41 @@
 
 #include <osgDB/Options>
 
+#include <functional>
 #include <string>
+#include <vector>
 
 namespace osgVolumizer {
 
-/// Reads a volume: a file that OpenImageIO opens (3D TIFF, several subimages, DICOM, OpenEXR, OpenVDB), a
-/// folder or a numbered pattern ("slice%03d.png", "slice####.png") of 2D images, or a raw file as
-/// "name.raw.256,256,110,uint8[,headerBytes[,big|little]]". Found along OSG's data path.
+/// Told how much of a long work is done, from 0 to 1.
+using Progress = std::function<void(double fraction)>;
+
+/// Reads a volume into memory. `name`, found along OSG's data path, is
+/// - a file that OpenImageIO opens: 3D TIFF, several subimages (pages) as slices, DICOM, OpenEXR,
+/// OpenVDB;
+/// - a folder of 2D images, in natural order, or a numbered pattern ("slice%03d.png",
+/// "slice####.png")
+///   without gaps;
+/// - a raw file as "name.raw.256,256,110,uint8[,headerBytes[,big|little]]".
+/// Image row 0 is j = 0, the first slice k = 0. Four channels R, G, B, A make RGBA voxels, R, G, B
+/// their luminance, anything else its first channel.
+///
 /// The option string of `options` holds, separated by blanks and all optional:
 ///   spacing=x,y,z  origin=x,y,z  range=low,high  brick=n | brick=x,y,z
-/// (unit= and table= are for readVolume). The result refers to the file by the name given here.
+/// (unit= and table= are accepted, and are for the .volume loader). The result refers to the file
+/// by the name and options given here.
+///
+/// Refused: FILE_NOT_FOUND; FILE_UNREADABLE (cut short, or no volume); SIZE_MISMATCH (a raw file of
+/// another length, unequal slices); VALUE_INVALID (option or raw format); TOO_LARGE (more than 2^36
+/// bytes, or than there is memory), found before anything is allocated.
 OSGVOLUMIZER_EXPORT Result<osg::ref_ptr<Voxels>> readVoxels(const std::string& name,
-                                                          const osgDB::Options* options = nullptr);
+                                                            const osgDB::Options* options = nullptr,
+                                                            const Progress& progress = {});
+
+/// Reads 2D images of one size, a slice each, in the order given. The result refers to no file, and
+/// so is stored inline in a scene.
+OSGVOLUMIZER_EXPORT Result<osg::ref_ptr<Voxels>> readSlices(const std::vector<std::string>& names,
+                                                            const osgDB::Options* options = nullptr,
+                                                            const Progress& progress = {});
 
 } // namespace osgVolumizer

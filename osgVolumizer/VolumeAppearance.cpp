@@ -28,7 +28,8 @@ VolumeAppearance::VolumeAppearance()
 
 VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op)
     : osg::Group(o, op), _voxels(o._voxels), _lookupTable(o._lookupTable), _technique(o._technique),
-      _interpolation(o._interpolation), _sampling(o._sampling), _opacityUnit(o._opacityUnit),
+      _interpolation(o._interpolation), _lookup(o._lookup), _exactFiltering(o._exactFiltering),
+      _sampling(o._sampling), _opacityUnit(o._opacityUnit),
       _tableTextures(new render::TableTextures)
 {
 }
@@ -41,6 +42,8 @@ void VolumeAppearance::setLookupTable(LookupTable* table)
 {
     _lookupTable = table ? table : new LookupTable;
 }
+
+int VolumeAppearance::getRequiredOverlap() const { return _interpolation == CUBIC ? 3 : 1; }
 
 Status VolumeAppearance::setSamplingPeriod(const osg::Vec3d& periodVoxel)
 {

@@ -22,7 +22,27 @@ public:
     /// Slabs: exact segments, second order. Slices: one polygon per sampling surface, first order.
     /// AUTOMATIC takes slabs wherever the geometry is convex.
     enum Technique { AUTOMATIC, SLICES, SLABS };
-    enum Interpolation { NEAREST, LINEAR };
+    /// How a value between samples comes about. NEAREST: that of the nearest sample. LINEAR: trilinear.
+    /// CUBIC: passes through the samples like LINEAR, with continuous derivatives and third-order
+    /// accuracy, and may overshoot (Keys, "Cubic convolution interpolation for digital image
+    /// processing", IEEE ASSP 29, 1981); 64 samples each, so slow; bricks need overlap 3.
+    enum Interpolation { NEAREST, LINEAR, CUBIC };
+    /// When the lookup table is applied.
+    enum Lookup {
+        /// PREINTEGRATED for tables with jumps or peaks that sampling would miss, else
+        /// AFTER_INTERPOLATION. The reason is sent to osg::notify(osg::INFO).
+        AUTOMATIC_LOOKUP,
+        /// Values are interpolated, then looked up: sharp, second order for smooth tables.
+        AFTER_INTERPOLATION,
+        /// Samples are looked up; extinction, and colour weighted by extinction, are interpolated. For
+        /// values that are labels, between which there is nothing. Eight lookups a sample (64
+        /// for CUBIC), but still no upload when the table changes.
+        BEFORE_INTERPOLATION,
+        /// Between two samples the value is taken to run linearly, and the table is averaged over that run
+        /// exactly: no value is skipped, however sharp the table (Engel, Kraus and Ertl,
+        /// Graphics Hardware 2001, by integral functions).
+        PREINTEGRATED
+    };
 
     VolumeAppearance();
     VolumeAppearance(const VolumeAppearance& o,
@@ -38,6 +58,16 @@ public:
     Technique getTechnique() const { return _technique; }
     void setInterpolation(Interpolation interpolation) { _interpolation = interpolation; }
     Interpolation getInterpolation() const { return _interpolation; }
+    void setLookup(Lookup lookup) { _lookup = lookup; }
+    Lookup getLookup() const { return _lookup; }
+    /// Texture units often interpolate with 8-bit weights, and some also round 8-bit samples to 8 bits. On:
+    /// interpolation in 32-bit floats from fetched samples, about half as fast. Off by default.
+    void setExactFiltering(bool exact) { _exactFiltering = exact; }
+    bool getExactFiltering() const { return _exactFiltering; }
+    /// Samples that bricks must share for interpolation and shading to show no seams: 1, and 2 more
+    /// each for CUBIC and for shading. Voxels::setOverlap() should get at least this; with less,
+    /// an error is reported, CUBIC falls back to LINEAR, and shading shows seams.
+    int getRequiredOverlap() const;
 
     void setSamplingMode(SamplingMode mode) { _sampling.mode = mode; }
     SamplingMode getSamplingMode() const { return _sampling.mode; }
@@ -72,6 +102,8 @@ private:
     osg::ref_ptr<LookupTable> _lookupTable;
     Technique _technique = AUTOMATIC;
     Interpolation _interpolation = LINEAR;
+    Lookup _lookup = AUTOMATIC_LOOKUP;
+    bool _exactFiltering = false;
     core::SamplingParameters _sampling;
     double _opacityUnit = 0.0;
     std::unique_ptr<render::TableTextures> _tableTextures;

@@ -9,11 +9,23 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
-#include <vector>
+#include <utility>
 
 namespace osgVolumizer {
+
+/// Samples of a box, x fastest, tightly packed, in native byte order; kept alive by `owner`.
+struct VoxelBlock
+{
+    std::shared_ptr<const void> owner;
+    const unsigned char* data = nullptr;
+    std::size_t bytes = 0;
+
+    explicit operator bool() const { return data != nullptr; }
+};
 
 /// Where voxels come from. Subclass it to page from a database, a simulation or a formula.
 /// Every method may be called from any thread, several at once.
@@ -24,20 +36,28 @@ public:
     {
         glm::ivec3 size{0}; ///< samples per axis
         VoxelType type = VoxelType::UINT8;
-        int components = 1; ///< 1 scalar, 4 RGBA
+        int components = 1;      ///< 1 scalar, 4 RGBA
         glm::dvec3 spacing{1.0}; ///< object units between samples
         glm::dvec3 origin{0.0};  ///< object position of sample (0,0,0)
+
+        std::int64_t sizeInBytes() const;
+        /// Refuses a size below 1, an unknown type, components other than 1 and 4, a spacing that
+        /// is not finite and positive, and an origin that is not finite.
+        Status validate() const;
     };
 
     virtual Description describe() const = 0;
-    /// Writes the samples of `region` (inside the volume) to `destination`, x fastest, tightly packed,
-    /// in native byte order.
+    /// Writes the samples of `region` (inside the volume) to `destination`, x fastest, tightly
+    /// packed, in native byte order.
     virtual Status read(const core::Box3i& region, void* destination) const = 0;
     /// Lowest and highest value in a region where that is known without reading; else nothing.
     virtual std::optional<std::pair<double, double>> valueRange(const core::Box3i& region) const
     {
         return std::nullopt;
     }
+    /// The samples of a region where they lie in memory as read() would write them; else an empty
+    /// block. Saves the copy.
+    virtual VoxelBlock share(const core::Box3i& region) const { return {}; }
 
 protected:
     VoxelSource() = default;
@@ -51,30 +71,41 @@ class OSGVOLUMIZER_EXPORT MemoryVoxelSource : public VoxelSource
 public:
     META_Object(osgVolumizer, MemoryVoxelSource)
 
+        /// Bound on what allocate() takes: 2^36 bytes.
+        static constexpr std::int64_t DEFAULT_MAXIMUM_BYTES = std::int64_t(1) << 36;
+
     MemoryVoxelSource() = default;
-    MemoryVoxelSource(const MemoryVoxelSource& o, const osg::CopyOp& op);
+    /// Shares the voxels; a copy of its own with CopyOp::DEEP_COPY_OBJECTS.
+    MemoryVoxelSource(const MemoryVoxelSource& o,
+                      const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
-    /// Allocates zeroed voxels. Refuses sizes below 1, and more than `maximumBytes` (default 2^36).
-    Status allocate(const Description& description);
-    /// Uses `data` (x fastest, tightly packed) as it is; `keepAlive` is called when no longer needed.
-    /// The application may change the values; it then tells Voxels::dirty().
-    Status setExternal(const Description& description, void* data, std::function<void()> release = {});
+    /// Allocates zeroed voxels. Refuses a description that is not valid, and more than
+    /// `maximumBytes` or than there is memory (TOO_LARGE); the old voxels then stay.
+    Status allocate(const Description& description,
+                    std::int64_t maximumBytes = DEFAULT_MAXIMUM_BYTES);
+    /// Uses `data` (x fastest, tightly packed) as it is; `release` is called when neither the
+    /// source nor a block of it is in use any more. The application may change the values between
+    /// frames; it then tells Voxels::dirty().
+    Status setExternal(const Description& description, void* data,
+                       std::function<void()> release = {});
 
-    void* data();
-    const void* data() const;
+    /// Null until there are voxels.
+    void* data() { return _data.get(); }
+    const void* data() const { return _data.get(); }
     std::size_t sizeInBytes() const;
 
-    Description describe() const override;
+    Description describe() const override { return _description; }
     Status read(const core::Box3i& region, void* destination) const override;
+    VoxelBlock share(const core::Box3i& region) const override;
 
 protected:
-    ~MemoryVoxelSource() override;
+    ~MemoryVoxelSource() override = default;
 
 private:
+    Status checkRegion(const core::Box3i& region) const;
+
     Description _description;
-    std::vector<unsigned char> _own;
-    void* _external = nullptr;
-    std::function<void()> _release;
+    std::shared_ptr<void> _data;
 };
 
 } // namespace osgVolumizer

@@ -3,14 +3,17 @@
 #include "VoxelSource.h"
 #include "core/voxels/BrickLayout.h"
 
-#include <osg/Vec3d>
 #include <osg/Vec2d>
+#include <osg/Vec3d>
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
-#include <vector>
+#include <unordered_map>
+#include <utility>
 
 namespace osgVolumizer {
 
@@ -23,7 +26,7 @@ class OSGVOLUMIZER_EXPORT Voxels : public osg::Object
 public:
     META_Object(osgVolumizer, Voxels)
 
-    Voxels();
+        Voxels();
     explicit Voxels(VoxelSource* source);
     Voxels(const Voxels& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
@@ -46,13 +49,15 @@ public:
     /// Mean of the three spacings: the default opacity unit.
     double getMeanSpacing() const;
 
-    /// Data values at the two ends of a lookup table's domain; low < high. Default: the type's range for
-    /// 8 bit, else the lowest and highest value found in the data.
+    /// Data values at the two ends of a lookup table's domain; low < high. Default: the type's
+    /// range for 8 bit and RGBA, else the lowest and highest value found in the data, once, on the
+    /// first call of getRange(); that reads all bricks where the source does not know it.
     Status setRange(const osg::Vec2d& range);
     osg::Vec2d getRange() const;
-    bool hasExplicitRange() const { return _explicitRange; }
+    bool hasExplicitRange() const;
 
-    /// Largest brick, in samples per axis; default 256^3. Drops resident bricks.
+    /// Largest brick, in samples per axis, each above the overlap; default 256^3. Drops resident
+    /// bricks. To be called, as every setter here, between frames.
     Status setBrickSize(const glm::ivec3& samples);
     glm::ivec3 getBrickSize() const { return _brickSize; }
     /// Samples shared by neighbours: 1 for linear filtering, 3 for cubic.
@@ -60,12 +65,18 @@ public:
     int getOverlap() const { return _overlap; }
     const core::BrickLayout& getLayout() const { return _layout; }
 
-    /// The samples of a brick, read on the first call; null (and an error) if the source fails.
-    /// Thread safe. The data is immutable: dirty() makes a new block.
-    using Block = std::shared_ptr<const std::vector<unsigned char>>;
+    /// The samples of a brick, read on the first call, once however many threads ask, and kept;
+    /// without a copy where the source shares its memory. Empty (after an error, reported once) if
+    /// the source fails, until dirty(). Thread safe. dirty() makes a new block; one that is held
+    /// stays as it is.
+    using Block = VoxelBlock;
     Block getBrick(std::int64_t brick) const;
-    /// Lowest and highest finite value of a brick: from the source's own knowledge, else from its
-    /// data, which is then read. Thread safe.
+    /// Forgets the samples of a brick (held blocks stay), keeps its range; read again when next
+    /// asked for.
+    void releaseBrick(std::int64_t brick) const;
+    /// Lowest and highest finite value of a brick (of alpha, for RGBA): from the source's own
+    /// knowledge, else from its data, which is then read. Low > high where there is none, or the
+    /// source fails: nothing to draw. Thread safe.
     std::pair<double, double> getBrickRange(std::int64_t brick) const;
 
     /// The data of a brick, or of all (-1), has changed: it is read and uploaded again.
@@ -75,18 +86,32 @@ public:
     /// Changes whenever layout, type, range, spacing or origin do. Thread safe.
     unsigned getLayoutCount() const { return _layoutCount; }
 
-    /// How a scene file refers to the voxels: a name for readVoxels(), with its options. Empty: inline.
+    /// How a scene file refers to the voxels: a name for readVoxels(), with its options. Empty:
+    /// inline.
     void setFileName(const std::string& name) { _fileName = name; }
     const std::string& getFileName() const { return _fileName; }
     void setFileOptions(const std::string& options) { _fileOptions = options; }
     const std::string& getFileOptions() const { return _fileOptions; }
 
-    /// Counters since construction: bricks read from the source.
+    /// Bricks read from the source (copied or shared) since construction.
     std::uint64_t getReadCount() const { return _readCount; }
 
-    /// Per-context textures, owned by the renderer; opaque here.
-    osg::Referenced* getRenderData() const;
-    void setRenderData(osg::Referenced* data) const;
+    /// What the renderer keeps with the voxels: textures per context. Every method may be called
+    /// from several threads.
+    class RenderData : public osg::Referenced
+    {
+    public:
+        virtual void resizeGLObjectBuffers(unsigned int maximum) = 0;
+        virtual void releaseGLObjects(osg::State* state) const = 0;
+
+    protected:
+        ~RenderData() override = default;
+    };
+    /// Null until it is made. Thread safe.
+    osg::ref_ptr<RenderData> getRenderData() const;
+    /// Calls `make` when there is none; one caller only does. Thread safe.
+    osg::ref_ptr<RenderData>
+    getOrCreateRenderData(const std::function<osg::ref_ptr<RenderData>()>& make) const;
     void resizeGLObjectBuffers(unsigned int maximum) override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
 
@@ -94,23 +119,36 @@ protected:
     ~Voxels() override;
 
 private:
-    struct Brick; // data, range and modified count of one brick
+    struct Brick; // samples, range and modified count of one brick
+    using BrickPtr = std::shared_ptr<Brick>;
 
-    Status rebuildLayout();
+    Status rebuildLayout(const glm::ivec3& brickSize, int overlap);
+    void forgetBricks();
+    BrickPtr findBrick(std::int64_t brick) const;
+    Block readBrick(const core::Box3i& samples, Status& status) const;
+    const Block& loadBrick(std::int64_t index, Brick& brick) const;
+    std::optional<std::pair<double, double>> knownRange(const core::Box3i& samples) const;
+    void findRange() const;
 
     osg::ref_ptr<VoxelSource> _source;
     VoxelSource::Description _description;
-    bool _explicitRange = false;
-    osg::Vec2d _range{0.0, 1.0};
     glm::ivec3 _brickSize{256};
     int _overlap = 1;
     core::BrickLayout _layout;
     std::string _fileName, _fileOptions;
-    mutable std::mutex _mutex;
-    mutable std::vector<Brick> _bricks;
+    bool _explicitRange = false;
+    mutable bool _rangeKnown = true;
+    mutable osg::Vec2d _range{0.0, 1.0};
+    mutable std::mutex _rangeMutex; // of the three above; taken before _mutex
+
+    mutable std::mutex _mutex;                                  // of what follows
+    mutable std::unordered_map<std::int64_t, BrickPtr> _bricks; // those asked for
+    unsigned _allModified = 0; // modified count of bricks not dirtied since
+    unsigned _lastModified = 0;
+    mutable osg::ref_ptr<RenderData> _renderData;
+
     mutable std::atomic<std::uint64_t> _readCount{0};
     std::atomic<unsigned> _layoutCount{0};
-    mutable osg::ref_ptr<osg::Referenced> _renderData;
 };
 
 } // namespace osgVolumizer

@@ -27,12 +27,6 @@ Status write(const FloatImage& image, const std::string& fileName, OIIO::ImageSp
     return Status();
 }
 
-float encodeSrgb(float linear)
-{
-    const float c = std::clamp(linear, 0.0f, 1.0f);
-    return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f;
-}
-
 unsigned char toByte(float value)
 {
     return static_cast<unsigned char>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
@@ -52,19 +46,18 @@ Status writeFloatPicture(const FloatImage& image, const std::string& fileName)
     return write(image, fileName, spec, values);
 }
 
-Status writeDisplayPicture(const FloatImage& image, const std::string& fileName, bool opaque)
+Status writeDisplayPicture(const FloatImage& image, const std::string& fileName)
 {
     if (image.empty()) return Status(ErrorCode::SIZE_MISMATCH, "There is no picture to write.");
-    OIIO::ImageSpec spec(image.width, image.height, opaque ? 3 : 4, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
+    OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:UnassociatedAlpha", 1);
     std::vector<unsigned char> values;
     values.reserve(image.pixels.size() * 4);
     for (const glm::vec4& p : image.pixels) {
-        const float undo = !opaque && p.a > 0.0f ? 1.0f / std::min(p.a, 1.0f) : 1.0f;
+        const float undo = p.a > 0.0f ? 1.0f / std::min(p.a, 1.0f) : 1.0f;
         for (int c = 0; c < 3; ++c)
-            values.push_back(toByte(encodeSrgb(p[c] * undo)));
-        if (!opaque) values.push_back(toByte(p.a));
+            values.push_back(toByte(p[c] * undo));
+        values.push_back(toByte(p.a));
     }
     return write(image, fileName, spec, values);
 }

@@ -12,10 +12,9 @@ namespace support {
 /// Writes 32-bit float RGBA as it is: linear, premultiplied, top row first. Any format of
 /// OpenImageIO that holds floats (.exr, .tif).
 Status writeFloatPicture(const FloatImage& image, const std::string& fileName);
-/// Writes 8-bit sRGB for people: values are clamped to [0, 1], the alpha undone, and the colours
-/// encoded with the sRGB curve. `opaque` leaves the alpha out: the picture over black.
-Status writeDisplayPicture(const FloatImage& image, const std::string& fileName,
-                           bool opaque = false);
+/// Writes 8-bit RGBA for people: the bytes that a window of OSG would show, without a transfer
+/// curve, clamped to [0, 1] and with straight alpha, as PNG has it.
+Status writeDisplayPicture(const FloatImage& image, const std::string& fileName);
 /// writeDisplayPicture() for .png and .jpg, else writeFloatPicture().
 Status writePicture(const FloatImage& image, const std::string& fileName);
 /// Reads what writeFloatPicture() wrote; missing channels are 0, a missing alpha 1.

@@ -1,8 +1,12 @@
 #include "Accumulation.h"
 
+#include "ScissorScope.h"
 #include "VolumeProgram.h"
 
-#include "../Error.h"
+#include <osg/Depth>
+#include <osgUtil/StateGraph>
+
+#include <algorithm>
 
 namespace osgVolumizer {
 namespace render {
@@ -42,7 +46,7 @@ void bindForCopy(osg::State& state, osg::Texture2D& texture)
 {
     state.setActiveTextureUnit(UNIT_OPAQUE_DEPTH);
     texture.apply(state);
-    state.dirtyTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
+    state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
 GLuint textureName(osg::State& state, osg::Texture2D& texture)
@@ -51,13 +55,21 @@ GLuint textureName(osg::State& state, osg::Texture2D& texture)
     return texture.getTextureObject(state.getContextID())->id();
 }
 
-// As precise as the framebuffer's own depth, so that equal depths stay equal.
-GLenum depthFormatOfFramebuffer(osg::GLExtensions& gl, GLint framebuffer)
+// Bits of an attachment of the framebuffer that is drawn to; `window` names the same part of a window.
+GLint attachmentBits(const ContextResources& resources, GLint framebuffer, GLenum attachment,
+                     GLenum window, GLenum parameter)
 {
     GLint bits = 0;
-    gl.glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER_EXT,
-                                             framebuffer ? GL_DEPTH_ATTACHMENT_EXT : GL_DEPTH,
-                                             GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, &bits);
+    resources.glGetFramebufferAttachmentParameteriv(
+        GL_DRAW_FRAMEBUFFER_EXT, framebuffer ? attachment : window, parameter, &bits);
+    return bits;
+}
+
+// As precise as the framebuffer's own depth, so that equal depths stay equal.
+GLenum depthFormatOfFramebuffer(const ContextResources& resources, GLint framebuffer)
+{
+    const GLint bits = attachmentBits(resources, framebuffer, GL_DEPTH_ATTACHMENT_EXT, GL_DEPTH,
+                                      GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE);
     return bits > 24 ? GL_DEPTH_COMPONENT32F : GL_DEPTH_COMPONENT24;
 }
 
@@ -71,6 +83,8 @@ void ensureDepth(AccumulationBuffers& buffers, int width, int height, GLenum dep
     buffers.depthFormat = depthFormat;
     buffers.opaqueDepth = makeDepth(buffers.width, buffers.height, depthFormat);
     buffers.color = nullptr;
+    buffers.layerDepth = nullptr;
+    buffers.layers.rankDepth = nullptr;
 }
 
 void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorFormat)
@@ -88,34 +102,103 @@ void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorF
     gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth, 0);
 }
 
+// Clearing the layer buffer needs depth writes.
+osg::ref_ptr<osg::StateSet> accumulationStateSet()
+{
+    static const osg::ref_ptr<osg::StateSet> set = []() {
+        osg::ref_ptr<osg::StateSet> s = new osg::StateSet;
+        s->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true),
+                                osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE |
+                                    osg::StateAttribute::PROTECTED);
+        return s;
+    }();
+    return set;
+}
+
+// Depth in float, so that what is written back from a texture is what was captured, to the last bit.
+osg::ref_ptr<osg::Texture2D> makeDepthStencil(int width, int height)
+{
+    return makeTarget(width, height, GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL_EXT,
+                      GL_FLOAT_32_UNSIGNED_INT_24_8_REV);
+}
+
+void makeLayerTextures(osg::State& state, AccumulationBuffers& buffers)
+{
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    LayerBuffers& layers = buffers.layers;
+    const int w = buffers.width, h = buffers.height;
+    const auto attach = [&](GLenum attachment, osg::Texture2D& texture) {
+        gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, attachment, GL_TEXTURE_2D,
+                                  textureName(state, texture), 0);
+    };
+    if (!layers.queries[0]) {
+        gl.glGenQueries(LayerBuffers::COUNT, layers.queries);
+        gl.glGenFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
+        gl.glGenFramebuffers(1, &layers.sortedFramebuffer);
+        gl.glGenFramebuffers(1, &layers.rankFramebuffer);
+    }
+    for (int k = 0; k < LayerBuffers::COUNT; ++k) {
+        layers.layers[k] = makeDepthStencil(w, h);
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.layerFramebuffers[k]);
+        attach(GL_DEPTH_STENCIL_ATTACHMENT_EXT, *layers.layers[k]);
+        glDrawBuffer(GL_NONE);
+        glReadBuffer(GL_NONE);
+    }
+    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.sortedFramebuffer);
+    for (int i = 0; i < 2; ++i) {
+        layers.sorted[i] = makeTarget(w, h, GL_RGBA32F_ARB, GL_RGBA, GL_FLOAT);
+        attach(GL_COLOR_ATTACHMENT0_EXT + static_cast<GLenum>(i), *layers.sorted[i]);
+    }
+    const GLenum both[2] = {GL_COLOR_ATTACHMENT0_EXT, GL_COLOR_ATTACHMENT1_EXT};
+    gl.glDrawBuffers(2, both);
+    layers.rankDepth = makeDepthStencil(w, h);
+    layers.rankColor = nullptr;
+    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.rankFramebuffer);
+    attach(GL_DEPTH_STENCIL_ATTACHMENT_EXT, *layers.rankDepth);
+}
+
 } // namespace
 
-bool Accumulation::needsTarget(osg::GLExtensions& gl) const
+LayerBuffers& Accumulation::layerBuffers(osg::State& state)
 {
-    GLint bits = 0;
-    gl.glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER_EXT,
-                                             _drawFramebuffer ? GL_COLOR_ATTACHMENT0_EXT
-                                                              : GL_BACK_LEFT,
-                                             GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
-    return bits < _settings.bits;
+    AccumulationBuffers& buffers = contextResources(state)->accumulation;
+    LayerBuffers& layers = buffers.layers;
+    if (!layers.rankDepth) makeLayerTextures(state, buffers);
+    if (layers.rankColor != buffers.color) {
+        osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+        const GLuint color = textureName(state, *buffers.color);
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.rankFramebuffer);
+        gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D,
+                                  color, 0);
+        layers.rankColor = buffers.color;
+    }
+    return layers;
+}
+
+bool Accumulation::needsTarget(const ContextResources& resources) const
+{
+    return _targetRequired ||
+           attachmentBits(resources, _drawFramebuffer, GL_COLOR_ATTACHMENT0_EXT, GL_BACK_LEFT,
+                          GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE) < _settings.bits;
 }
 
 void Accumulation::begin(osg::RenderInfo& renderInfo)
 {
     osg::State& state = *renderInfo.getState();
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    AccumulationBuffers& buffers = contextResources(state)->accumulation;
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    AccumulationBuffers& buffers = resources->accumulation;
     const AccumulationSettings& s = _settings;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING_EXT, &_drawFramebuffer);
     glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING_EXT, &_readFramebuffer);
     glGetIntegerv(GL_SAMPLE_BUFFERS, &_sampleBuffers);
 
     ensureDepth(buffers, s.x + s.width, s.y + s.height,
-                depthFormatOfFramebuffer(gl, _drawFramebuffer));
+                depthFormatOfFramebuffer(*resources, _drawFramebuffer));
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
     bindForCopy(state, *buffers.opaqueDepth);
     glCopyTexSubImage2D(GL_TEXTURE_2D, 0, s.x, s.y, s.x, s.y, s.width, s.height);
-    if (needsTarget(gl)) {
+    if (needsTarget(*resources)) {
         ensureTarget(state, buffers, colorFormatOf(s.bits));
         copyColor(state, buffers);
         _redirected = true;
@@ -143,7 +226,37 @@ void Accumulation::end(osg::RenderInfo& renderInfo)
     if (_redirected) writeBack(state, contextResources(state)->accumulation);
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_readFramebuffer));
-    state.dirtyTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
+    state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
+}
+
+void Accumulation::beginLayer(osg::RenderInfo& renderInfo, const glm::ivec4& area)
+{
+    osg::State& state = *renderInfo.getState();
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    AccumulationBuffers& buffers = resources->accumulation;
+    if (!buffers.layerDepth) {
+        buffers.layerDepth = makeDepth(buffers.width, buffers.height, buffers.depthFormat);
+        const GLuint depth = textureName(state, *buffers.layerDepth);
+        if (!buffers.layerFramebuffer) gl.glGenFramebuffers(1, &buffers.layerFramebuffer);
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.layerFramebuffer);
+        gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth,
+                                  0);
+        glDrawBuffer(GL_NONE);
+        glReadBuffer(GL_NONE);
+    }
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, buffers.layerFramebuffer);
+    const ScissorScope scissor;
+    scissor.set(area);
+    glClear(GL_DEPTH_BUFFER_BIT);
+}
+
+void Accumulation::endLayer(osg::RenderInfo& renderInfo)
+{
+    osg::State& state = *renderInfo.getState();
+    const GLuint target = _redirected ? contextResources(state)->accumulation.framebuffer
+                                      : static_cast<GLuint>(_drawFramebuffer);
+    state.get<osg::GLExtensions>()->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, target);
 }
 
 void Accumulation::writeBack(osg::State& state, AccumulationBuffers& buffers)
@@ -156,8 +269,8 @@ void Accumulation::writeBack(osg::State& state, AccumulationBuffers& buffers)
                          s.y + s.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step)
-    : _accumulation(accumulation), _step(step)
+AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step, const glm::ivec4& area)
+    : _accumulation(accumulation), _step(step), _area(area)
 {
     setSupportsDisplayList(false);
     setUseDisplayList(false);
@@ -168,10 +281,21 @@ AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step)
 void AccumulationLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     if (!_accumulation) return;
-    if (_step == BEGIN)
-        _accumulation->begin(renderInfo);
-    else
-        _accumulation->end(renderInfo);
+    switch (_step) {
+    case BEGIN: _accumulation->begin(renderInfo); break;
+    case END: _accumulation->end(renderInfo); break;
+    case BEGIN_LAYER: _accumulation->beginLayer(renderInfo, _area); break;
+    case END_LAYER: _accumulation->endLayer(renderInfo); break;
+    }
+}
+
+osgUtil::RenderLeaf* accumulationLeaf(Accumulation& accumulation, AccumulationLeaf::Step step,
+                                      const osgUtil::RenderLeaf& beside, const glm::ivec4& area)
+{
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
+        new AccumulationLeaf(&accumulation, step, area), beside._projection, beside._modelview);
+    beside._parent->find_or_insert(accumulationStateSet())->addLeaf(leaf);
+    return leaf.get();
 }
 
 } // namespace render

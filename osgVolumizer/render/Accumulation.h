@@ -3,6 +3,9 @@
 #include "ContextResources.h"
 
 #include <osg/Drawable>
+#include <osgUtil/RenderLeaf>
+
+#include <glm/vec4.hpp>
 
 namespace osgVolumizer {
 namespace render {
@@ -27,25 +30,35 @@ public:
 
     void begin(osg::RenderInfo& renderInfo);
     void end(osg::RenderInfo& renderInfo);
+    /// Redirects drawing to an empty depth buffer, where surfaces leave their nearest depth...
+    /// \param area window rectangle (x, y, width, height) that is cleared and drawn to
+    void beginLayer(osg::RenderInfo& renderInfo, const glm::ivec4& area);
+    /// ...for segments to be split at.
+    void endLayer(osg::RenderInfo& renderInfo);
+
+    /// Before the frame is drawn: there has to be a target, whatever the framebuffer has.
+    void requireTarget() { _targetRequired = true; }
+    /// The buffers of sorted layers, made when first asked for, with the target's colour.
+    LayerBuffers& layerBuffers(osg::State& state);
 
 private:
-    bool needsTarget(osg::GLExtensions& gl) const;
+    bool needsTarget(const ContextResources& resources) const;
     void copyColor(osg::State& state, AccumulationBuffers& buffers);
     void writeBack(osg::State& state, AccumulationBuffers& buffers);
 
     AccumulationSettings _settings;
-    bool _redirected = false;
+    bool _redirected = false, _targetRequired = false;
     GLint _drawFramebuffer = 0, _readFramebuffer = 0, _sampleBuffers = 0;
 };
 
-/// The leaf that calls Accumulation::begin or end.
+/// The leaf that calls one of Accumulation's steps.
 class AccumulationLeaf : public osg::Drawable
 {
 public:
-    enum Step { BEGIN, END };
+    enum Step { BEGIN, END, BEGIN_LAYER, END_LAYER };
 
-    AccumulationLeaf(Accumulation* accumulation, Step step);
-    osg::Object* cloneType() const override { return new AccumulationLeaf(nullptr, BEGIN); }
+    AccumulationLeaf(Accumulation* accumulation, Step step, const glm::ivec4& area);
+    osg::Object* cloneType() const override { return new AccumulationLeaf(nullptr, BEGIN, glm::ivec4(0)); }
     osg::Object* clone(const osg::CopyOp&) const override { return cloneType(); }
     const char* libraryName() const override { return "osgVolumizer"; }
     const char* className() const override { return "AccumulationLeaf"; }
@@ -54,7 +67,12 @@ public:
 private:
     osg::ref_ptr<Accumulation> _accumulation;
     Step _step;
+    glm::ivec4 _area;
 };
+
+/// A leaf for a step, among the leaves of the same bin and view as `beside`.
+osgUtil::RenderLeaf* accumulationLeaf(Accumulation& accumulation, AccumulationLeaf::Step step,
+                                      const osgUtil::RenderLeaf& beside, const glm::ivec4& area);
 
 } // namespace render
 } // namespace osgVolumizer

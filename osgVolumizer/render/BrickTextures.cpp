@@ -20,8 +20,8 @@ private:
     std::shared_ptr<const void> _block;
 };
 
-// How a voxel type goes to GL: signed integers are moved up to unsigned ones, and what has no filterable
-// texture becomes the fraction of the range as a float.
+// How a voxel type goes to GL: signed integers are moved up to unsigned ones, and what has no
+// filterable texture becomes the fraction of the range as a float.
 struct TexelFormat
 {
     VoxelType type;
@@ -43,7 +43,8 @@ TexelFormat texelFormat(VoxelType type, int components)
         return {VoxelType::HALF, GLenum(scalar ? GL_R16F : GL_RGBA16F_ARB), GL_HALF_FLOAT, false};
     case VoxelType::FLOAT32:
         return {VoxelType::FLOAT32, GLenum(scalar ? GL_R32F : GL_RGBA32F_ARB), GL_FLOAT, false};
-    default: return {VoxelType::FLOAT32, GLenum(scalar ? GL_R32F : GL_RGBA32F_ARB), GL_FLOAT, true};
+    default:
+        return {VoxelType::FLOAT32, GLenum(scalar ? GL_R32F : GL_RGBA32F_ARB), GL_FLOAT, true};
     }
 }
 
@@ -85,7 +86,7 @@ VoxelBlock texelsOf(const Voxels& voxels, const VoxelBlock& block, const TexelFo
     return {converted, converted->data(), converted->size()};
 }
 
-BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick, bool linear)
+BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick)
 {
     VoxelBlock block = voxels.getBrick(brick);
     if (!block.data) return {};
@@ -101,9 +102,8 @@ BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick, bool linear)
     texture->setInternalFormat(static_cast<GLint>(format.internalFormat));
     texture->setResizeNonPowerOfTwoHint(false);
     texture->setUnRefImageDataAfterApply(false);
-    const auto filter = linear ? osg::Texture::LINEAR : osg::Texture::NEAREST;
-    texture->setFilter(osg::Texture::MIN_FILTER, filter);
-    texture->setFilter(osg::Texture::MAG_FILTER, filter);
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
+    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
     for (auto axis : {osg::Texture::WRAP_S, osg::Texture::WRAP_T, osg::Texture::WRAP_R})
         texture->setWrap(axis, osg::Texture::CLAMP_TO_EDGE);
     texture->setDataVariance(osg::Object::STATIC);
@@ -114,23 +114,18 @@ BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick, bool linear)
 
 osg::ref_ptr<BrickTextures> BrickTextures::of(const Voxels& voxels)
 {
-    static std::mutex mutex;
-    std::lock_guard<std::mutex> lock(mutex);
-    osg::ref_ptr<BrickTextures> textures = dynamic_cast<BrickTextures*>(voxels.getRenderData());
-    if (!textures) {
-        textures = new BrickTextures;
-        voxels.setRenderData(textures);
-    }
-    return textures;
+    const auto data = voxels.getOrCreateRenderData(
+        []() -> osg::ref_ptr<Voxels::RenderData> { return new BrickTextures; });
+    return static_cast<BrickTextures*>(data.get());
 }
 
-BrickTexture BrickTextures::get(const Voxels& voxels, std::int64_t brick, bool linear)
+BrickTexture BrickTextures::get(const Voxels& voxels, std::int64_t brick)
 {
     const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
     std::lock_guard<std::mutex> lock(_mutex);
-    Entry& entry = _entries[{brick, linear}];
+    Entry& entry = _entries[brick];
     if (!entry.brick.texture || entry.modifiedCount != modified || entry.layoutCount != layout)
-        entry = {makeTexture(voxels, brick, linear), modified, layout};
+        entry = {makeTexture(voxels, brick), modified, layout};
     return entry.brick;
 }
 
@@ -146,6 +141,35 @@ void BrickTextures::releaseGLObjects(osg::State* state) const
     std::lock_guard<std::mutex> lock(_mutex);
     for (const auto& entry : _entries)
         if (entry.second.brick.texture) entry.second.brick.texture->releaseGLObjects(state);
+}
+
+void chooseFormat(osg::State& state, osg::Texture3D& texture)
+{
+    static std::mutex mutex;
+    static std::map<unsigned, bool> filtersInSoftware; // by context
+    const unsigned context = state.getContextID();
+    std::lock_guard<std::mutex> lock(mutex);
+    auto known = filtersInSoftware.find(context);
+    if (known == filtersInSoftware.end()) {
+        const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+        const bool software = name && std::strstr(name, "llvmpipe");
+        known = filtersInSoftware.emplace(context, software).first;
+    }
+    if (!known->second || texture.getTextureObject(context)) return;
+    switch (texture.getInternalFormat()) {
+    case GL_R8:
+    case GL_R16:
+    case GL_R16F:
+        texture.setInternalFormat(GL_R32F);
+        break;
+    case GL_RGBA8:
+    case GL_RGBA16:
+    case GL_RGBA16F_ARB:
+        texture.setInternalFormat(GL_RGBA32F_ARB);
+        break;
+    default:
+        break;
+    }
 }
 
 glm::dvec2 texelToRangeFraction(const Voxels& voxels)

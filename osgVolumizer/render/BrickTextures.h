@@ -8,7 +8,6 @@
 
 #include <map>
 #include <mutex>
-#include <utility>
 
 namespace osgVolumizer {
 namespace render {
@@ -20,8 +19,8 @@ struct BrickTexture
     std::size_t bytes = 0;
 };
 
-/// The textures of one Voxels, shared by all views and contexts, for as long as its data stays the same.
-/// Thread safe.
+/// The textures of one Voxels, shared by all views and contexts, for as long as its data stays the
+/// same. Thread safe.
 class BrickTextures : public Voxels::RenderData
 {
 public:
@@ -29,7 +28,7 @@ public:
     static osg::ref_ptr<BrickTextures> of(const Voxels& voxels);
 
     /// Null where the source fails. Reads the brick unless it is resident.
-    BrickTexture get(const Voxels& voxels, std::int64_t brick, bool linear);
+    BrickTexture get(const Voxels& voxels, std::int64_t brick);
 
     void resizeGLObjectBuffers(unsigned int maximum) override;
     void releaseGLObjects(osg::State* state) const override;
@@ -42,8 +41,14 @@ private:
     };
 
     mutable std::mutex _mutex;
-    std::map<std::pair<std::int64_t, bool>, Entry> _entries;
+    std::map<std::int64_t, Entry> _entries;
 };
+
+/// On devices that filter float textures both faster and more exactly than others (llvmpipe, whose
+/// 8-bit path also rounds the result to 8 bits: an error of half a 255th of the type's range),
+/// makes a texture that has not been uploaded yet a float one; the values read are the same. Call
+/// in the draw thread before the texture is applied. Thread safe.
+void chooseFormat(osg::State& state, osg::Texture3D& texture);
 
 /// Scale and offset from a texel, as the shader reads it, to the fraction of the voxels' range.
 glm::dvec2 texelToRangeFraction(const Voxels& voxels);

@@ -27,12 +27,26 @@ void release(ContextResources& resources, unsigned contextId)
     if (gl) {
         resources.vertices.release(*gl);
         resources.indices.release(*gl);
-        if (resources.accumulation.framebuffer)
-            gl->glDeleteFramebuffers(1, &resources.accumulation.framebuffer);
+        AccumulationBuffers& buffers = resources.accumulation;
+        LayerBuffers& layers = buffers.layers;
+        for (GLuint* name : {&buffers.framebuffer, &buffers.layerFramebuffer,
+                             &layers.sortedFramebuffer, &layers.rankFramebuffer})
+            if (*name) gl->glDeleteFramebuffers(1, name);
+        if (layers.queries[0]) {
+            gl->glDeleteFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
+            gl->glDeleteQueries(LayerBuffers::COUNT, layers.queries);
+        }
     }
 }
 
 } // namespace
+
+ContextResources::ContextResources()
+{
+    osg::setGLExtensionFuncPtr(glGetFramebufferAttachmentParameteriv,
+                               "glGetFramebufferAttachmentParameteriv",
+                               "glGetFramebufferAttachmentParameterivEXT");
+}
 
 void StreamBuffer::stream(osg::GLExtensions& gl, GLenum target, const void* data, std::size_t bytes)
 {
@@ -51,7 +65,7 @@ std::shared_ptr<ContextResources> contextResources(osg::State& state)
 {
     std::lock_guard<std::mutex> lock(registryMutex());
     std::shared_ptr<ContextResources>& entry = registry()[state.getContextID()];
-    if (!entry) entry.reset(new ContextResources);
+    if (!entry) entry = std::make_shared<ContextResources>();
     return entry;
 }
 

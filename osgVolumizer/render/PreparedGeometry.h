@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 namespace osgVolumizer {
 class VolumeGeometry;
@@ -28,6 +29,10 @@ struct PreparedGeometry
     bool voxelFrame = true;
     core::Box3d bounds;                       ///< of the tetrahedra, in the frame
     std::optional<core::ConvexRegion> region; ///< in the frame, where the tetrahedra are convex
+    /// What of the region its axis-aligned half-spaces leave (and the voxels), and the half-spaces
+    /// that cut this further; `bounds` and none where there is no region.
+    core::Box3d regionBox;
+    std::vector<core::Plane> obliquePlanes;
 };
 
 /// Prepared geometries of one VolumeGeometry, by what they were made from. Thread safe.

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "../LookupTable.h"
+#include "../VolumeAppearance.h"
 
-#include <osg/Texture2D>
+#include <osg/TextureBuffer>
 
-#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 
 #include <list>
 #include <memory>
@@ -13,20 +13,28 @@
 namespace osgVolumizer {
 namespace render {
 
-/// A lookup table as a texture of one row: colour, and extinction in bits per opacity unit.
+/// A lookup table as a texture buffer, read at the nearest entry, which on some devices costs a
+/// third of what a filtered texture does. Entry i of count is at i/(count-1) of the voxels' range:
+/// colour, and extinction in bits per opacity unit. Where there are integrals, as many texels
+/// follow: the integral of extinction times colour, and of extinction, from the first entry to
+/// each, in entries, so that the difference of two over the difference of their indices is a mean.
 struct TableTexture
 {
-    osg::ref_ptr<osg::Texture2D> texture;
-    glm::dvec2 fractionToCoordinate{1.0, 0.0}; ///< scale and offset: fraction of the range -> texture
-    LookupTable::Function function;            ///< of the fraction of the range
-    unsigned id = 0;                           ///< differs for every texture ever made
+    osg::ref_ptr<osg::TextureBuffer> texture;
+    bool integrals = false;
+    int count = 1;                   ///< entries
+    glm::vec4 low{0.0f}, high{0.0f}; ///< extinction times colour, extinction: beyond the ends
+    LookupTable::Function function;  ///< of the fraction of the range
+    unsigned id = 0;                 ///< differs for every texture ever made
 };
 
 /// Tables of one appearance, by what they were made from. Thread safe.
 class TableTextures
 {
 public:
-    TableTexture get(const LookupTable& table, const osg::Vec2d& range);
+    /// BEFORE_INTERPOLATION needs what AFTER_INTERPOLATION needs.
+    TableTexture get(const LookupTable& table, const osg::Vec2d& range,
+                     VolumeAppearance::Lookup lookup);
     void resizeGLObjectBuffers(unsigned int maximum);
     void releaseGLObjects(osg::State* state) const;
 
@@ -36,6 +44,7 @@ private:
         osg::ref_ptr<const LookupTable> table;
         unsigned modifiedCount;
         osg::Vec2d range;
+        VolumeAppearance::Lookup lookup;
         TableTexture texture;
     };
     static constexpr std::size_t CAPACITY = 3;

@@ -1,9 +1,11 @@
 #include "VolumeDrawable.h"
 
 #include "../Error.h"
+#include "BrickTextures.h"
 #include "ContextResources.h"
 #include "Matrices.h"
 #include "PixelRays.h"
+#include "ScissorScope.h"
 #include "Statistics.h"
 
 #include <osg/Program>
@@ -33,6 +35,10 @@ public:
     void set(const char* name, const glm::vec3& v) const
     {
         _gl.glUniform3fv(location(name), 1, glm::value_ptr(v));
+    }
+    void set(const char* name, const glm::vec4& v) const
+    {
+        _gl.glUniform4fv(location(name), 1, glm::value_ptr(v));
     }
     void set(const char* name, const glm::dmat3& v) const
     {
@@ -69,32 +75,49 @@ glm::dvec4 viewportOf(osg::State& state)
     return {v[0], v[1], v[2], v[3]};
 }
 
+void setTable(const Uniforms& uniforms, const VolumeLook& look)
+{
+    uniforms.set("valueToEntry", look.valueToEntry);
+    uniforms.set("lastEntry", static_cast<float>(look.table.count - 1));
+    if (!look.features.preIntegrated) return;
+    uniforms.set("tableLow", look.table.low);
+    uniforms.set("tableHigh", look.table.high);
+}
+
 void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& rays)
 {
     uniforms.set("windowCenter", glm::vec2(rays.windowCenter));
     uniforms.set("rayOrigin", rays.origin);
     uniforms.set("rayDirection", rays.direction);
     uniforms.set("frameToUnits", look.frameToUnits);
-    uniforms.set("valueToTable", look.valueToTable);
+    if (look.table.texture) setTable(uniforms, look);
     if (look.features.slab) {
         uniforms.set("stepDepth", static_cast<float>(look.step));
-        uniforms.set("maximumSteps", look.maximumSteps);
+        uniforms.set("maximumSteps", static_cast<float>(look.maximumSteps));
+        if (look.features.layerDepth)
+            uniforms.set("inFrontOfLayer", look.inFrontOfLayer ? 1 : 0);
+        if (look.features.ranked) uniforms.set("rank", look.rank);
+        uniforms.set("regionMin", look.regionMin);
+        uniforms.set("regionMax", look.regionMax);
         uniforms.set("planes", look.planes);
     } else {
-        uniforms.set("spacing", static_cast<float>(look.step));
         uniforms.set("surfaceNormal", glm::vec3(look.surfaceNormal));
         if (look.features.spherical) uniforms.set("rayDirectionEye", rays.directionEye);
     }
 }
 
-void setOpaqueDepth(osg::State& state, const Uniforms& uniforms, const PixelRays& rays,
-                    AccumulationBuffers& buffers)
+void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRays& rays,
+                      const ProgramFeatures& features, const AccumulationBuffers& buffers)
 {
     if (!buffers.opaqueDepth) return;
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
-    uniforms.set("opaqueDepthScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
-                                               1.0f / static_cast<float>(buffers.height)));
-    uniforms.set("opaqueDepthOffset", glm::vec2(0.0f));
+    if (features.layerDepth) state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.layerDepth.get());
+    if (features.ranked) {
+        state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.layers.sorted[0].get());
+        state.applyTextureAttribute(UNIT_SORTED_NEAR, buffers.layers.sorted[1].get());
+    }
+    uniforms.set("depthTextureScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
+                                                1.0f / static_cast<float>(buffers.height)));
     uniforms.set("clipZOrigin", glm::vec3(rays.clipZOrigin));
     uniforms.set("clipZDirection", glm::vec3(rays.clipZDirection));
     uniforms.set("clipWOrigin", glm::vec3(rays.clipWOrigin));
@@ -106,7 +129,7 @@ class BoundMesh
 {
 public:
     BoundMesh(osg::State& state, osg::GLExtensions& gl, ContextResources& resources,
-              const VolumeMesh& mesh)
+              const VolumeMesh& mesh, float spacing)
         : _state(state), _gl(gl)
     {
         state.lazyDisablingOfVertexAttributes();
@@ -118,15 +141,19 @@ public:
         enable(ATTRIBUTE_POSITION, 3, mesh.positionOffset, mesh.stride);
         if (mesh.slabOffset >= 0) enable(ATTRIBUTE_SLAB, 2, mesh.slabOffset, mesh.stride);
         if (mesh.voxelCoordinateOffset >= 0)
-            enable(ATTRIBUTE_SLAB, 3, mesh.voxelCoordinateOffset, mesh.stride);
+            enable(ATTRIBUTE_VOXEL_COORDINATE, 3, mesh.voxelCoordinateOffset, mesh.stride);
         if (mesh.colorOffset >= 0)
             enable(ATTRIBUTE_COLOR, mesh.colorSize, mesh.colorOffset, mesh.stride);
+        if (mesh.spacingOffset >= 0)
+            enable(ATTRIBUTE_SPACING, 1, mesh.spacingOffset, mesh.stride);
+        else
+            gl.glVertexAttrib1f(ATTRIBUTE_SPACING, spacing);
     }
     BoundMesh(const BoundMesh&) = delete;
     BoundMesh& operator=(const BoundMesh&) = delete;
     ~BoundMesh()
     {
-        for (unsigned a = 0; a < 3; ++a)
+        for (unsigned a = 0; a < ATTRIBUTE_COUNT; ++a)
             if (_enabled[a]) _gl.glDisableVertexAttribArray(a);
         _gl.glBindBuffer(GL_ARRAY_BUFFER_ARB, 0);
         _gl.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER_ARB, 0);
@@ -146,7 +173,7 @@ private:
 
     osg::State& _state;
     osg::GLExtensions& _gl;
-    bool _enabled[3] = {false, false, false};
+    bool _enabled[ATTRIBUTE_COUNT] = {};
 };
 
 void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms, const BrickBatch& batch)
@@ -158,6 +185,7 @@ void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms, const Bric
                   "osgVolumizer bricks uploaded", 1.0);
             count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
                   "osgVolumizer bytes uploaded", static_cast<double>(batch.textureBytes));
+            chooseFormat(state, *batch.texture);
         }
         state.applyTextureAttribute(UNIT_VOXELS, batch.texture.get());
         uniforms.set("textureScale", batch.textureScale);
@@ -198,17 +226,28 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     uniforms.set("frameToClip", projection * toEye);
     setLook(uniforms, *_look, *rays);
     if (_look->features.opaqueDepth)
-        setOpaqueDepth(state, uniforms, *rays, resources->accumulation);
-    if (_look->table) state.applyTextureAttribute(UNIT_TABLE, _look->table.get());
+        setDepthTextures(state, uniforms, *rays, _look->features, resources->accumulation);
+    if (_look->table.texture)
+        state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
     {
-        const BoundMesh bound(state, gl, *resources, *_mesh);
-        for (const BrickBatch& batch : _mesh->batches) drawBatch(renderInfo, uniforms, batch);
+        const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
+        const auto drawBatches = [&]() {
+            for (const BrickBatch& batch : _mesh->batches) drawBatch(renderInfo, uniforms, batch);
+        };
+        if (_look->scissors.empty()) {
+            drawBatches();
+        } else {
+            const ScissorScope scissor;
+            for (const glm::ivec4& rectangle : _look->scissors)
+                if (scissor.set(rectangle)) drawBatches();
+        }
     }
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
     // OSG compares attributes by address: make it bind its own again whatever ours were.
-    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH})
-        state.dirtyTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH, UNIT_LAYER_DEPTH, UNIT_SORTED_FAR,
+                          UNIT_SORTED_NEAR})
+        state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }
 
 } // namespace render

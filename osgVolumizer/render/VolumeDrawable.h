@@ -1,5 +1,6 @@
 #pragma once
 
+#include "TableTextures.h"
 #include "VolumeProgram.h"
 
 #include "../core/sampling/Polygonize.h"
@@ -34,6 +35,7 @@ struct VolumeMesh
 {
     int stride = 3; ///< floats a vertex
     int slabOffset = -1, voxelCoordinateOffset = -1, colorOffset = -1, colorSize = 0;
+    int spacingOffset = -1; ///< slices with a thickness each; else all have VolumeLook::step
     int positionOffset = 0;
     std::vector<float> vertices;
     std::vector<unsigned> indices;
@@ -45,14 +47,22 @@ struct VolumeMesh
 struct VolumeLook
 {
     ProgramFeatures features;
-    osg::ref_ptr<osg::Texture2D> table;
-    glm::vec2 valueToTable{1.0f, 0.0f};
+    TableTexture table;
+    glm::vec2 valueToEntry{1.0f, 0.0f}; ///< scale and offset: texel -> entry of the table
     glm::dmat3 frameToUnits{1.0};     ///< frame vector -> opacity units
     glm::dvec3 center{0.0};           ///< frame; the middle of the volume
     double referenceDepth = 0.0;      ///< eye units; depths of slabs are counted from here
     double step = 1.0;                ///< between samples or slices: depth, distance or frame units
     glm::dvec3 surfaceNormal{0.0};    ///< slices: frame units; along which `step` is counted
+    bool inFrontOfLayer = false;      ///< slabs: which part of a segment split by surfaces
+    int rank = 0;                     ///< slabs: between which ranks of surfaces
+    std::vector<glm::ivec4> scissors; ///< window rectangles to draw in; none: everywhere
     int maximumSteps = 1;
+    glm::vec3 regionMin{0.0f}, regionMax{0.0f}; ///< slabs: box of the whole volume (frame)
+    /// Slabs: part of a pixel, in the frame. Faces are this much larger than what they stand for: which
+    /// pixels a segment covers is for the shader to say, whose answer does not depend on how GL
+    /// rounds vertices or whom it gives the pixels on an edge.
+    glm::dvec3 pixelMargin{0.0};
     std::vector<glm::vec4> planes; ///< the region's half-spaces (frame)
 };
 

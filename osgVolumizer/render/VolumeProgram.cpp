@@ -27,7 +27,16 @@ std::string header(const ProgramFeatures& features)
     define(features.voxels, "VOXELS");
     define(features.rgba, "RGBA");
     define(features.opaqueDepth, "OPAQUE_DEPTH");
+    define(features.layerDepth, "LAYER_DEPTH");
+    define(features.ranked, "RANKED");
     define(features.spherical, "SPHERICAL");
+    define(features.exact, "EXACT");
+    define(features.nearest, "NEAREST");
+    define(features.cubic, "CUBIC");
+    define(features.before, "BEFORE");
+    define(features.preIntegrated, "PREINTEGRATED");
+    define(features.smoothTable, "SMOOTH_TABLE");
+    define(features.exact || features.nearest || features.cubic || features.before, "FETCH");
     text += "#define PLANES " + std::to_string(features.planeCount) + "\n";
     return text;
 }
@@ -39,9 +48,11 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
     result->setName("osgVolumizer " + kind);
     result->addShader(new osg::Shader(osg::Shader::VERTEX,
                                       header(features) + shaderSource(kind + ".vert.glsl")));
-    result->addShader(new osg::Shader(osg::Shader::FRAGMENT, header(features) +
-                                                                 shaderSource("transfer.glsl") +
-                                                                 shaderSource(kind + ".frag.glsl")));
+    std::string fragment = header(features);
+    for (const std::string& file : {std::string("voxels.glsl"), std::string("transfer.glsl"),
+                                    std::string("ray.glsl"), kind + ".frag.glsl"})
+        fragment += shaderSource(file);
+    result->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));
     return result;
 }
 
@@ -60,10 +71,15 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     // OSG's transparent bins drop fragments of alpha 0, which may still carry colour.
     set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f),
                               StateAttribute::OFF | StateAttribute::PROTECTED);
+    // Segments end at near and far themselves: rounding must not cut off the face on the near plane.
+    if (features.slab) set->setMode(GL_DEPTH_CLAMP, StateAttribute::ON | StateAttribute::PROTECTED);
     set->setMode(GL_CULL_FACE, StateAttribute::OFF | StateAttribute::PROTECTED);
     set->addUniform(new osg::Uniform("voxels", int(UNIT_VOXELS)));
     set->addUniform(new osg::Uniform("lookupTable", int(UNIT_TABLE)));
     set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
+    set->addUniform(new osg::Uniform("layerDepth", int(UNIT_LAYER_DEPTH)));
+    set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
     set->setRenderBinDetails(10, "DepthSortedBin");
     set->setNestRenderBins(false);
     return set;
@@ -74,7 +90,7 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
 {
     static std::mutex mutex;
-    static std::map<unsigned, osg::ref_ptr<osg::StateSet>> sets;
+    static std::map<std::uint64_t, osg::ref_ptr<osg::StateSet>> sets;
     std::lock_guard<std::mutex> lock(mutex);
     osg::ref_ptr<osg::StateSet>& set = sets[features.key()];
     if (!set) set = makeStateSet(features);

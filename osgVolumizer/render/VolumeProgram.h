@@ -2,6 +2,8 @@
 
 #include <osg/StateSet>
 
+#include <cstdint>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -14,21 +16,47 @@ struct ProgramFeatures
     bool voxels = true;  ///< a brick texture
     bool rgba = false;   ///< voxels are colours, not values to look up
     bool opaqueDepth = false;
+    bool layerDepth = false; ///< surfaces split the segment; expects opaqueDepth
+    bool ranked = false; ///< the segment lies between two ranks of surfaces; expects opaqueDepth
     bool spherical = false; ///< slices are spheres about the eye
-    int planeCount = 0;  ///< half-spaces that end the segment, besides the clip box
+    bool exact = false;     ///< interpolate from fetched samples, in full precision
+    bool nearest = false, cubic = false; ///< else linear
+    bool before = false;        ///< look samples up, then interpolate
+    bool preIntegrated = false; ///< look runs of values up
+    bool smoothTable = false;   ///< interpolate between entries
+    int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
 
-    unsigned key() const
+    /// Different for different features.
+    std::uint64_t key() const
     {
-        return unsigned(slab) | unsigned(voxelCoordinates) << 1 | unsigned(vertexColors) << 2 |
-               unsigned(voxels) << 3 | unsigned(rgba) << 4 | unsigned(opaqueDepth) << 5 |
-               unsigned(spherical) << 6 | unsigned(planeCount) << 8;
+        std::uint64_t result = static_cast<std::uint64_t>(planeCount);
+        for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth, layerDepth, ranked,
+                          spherical, exact, nearest, cubic, before, preIntegrated,
+                          smoothTable})
+            result = result << 1 | std::uint64_t(flag);
+        return result;
     }
 };
 
 /// Texture units of the samplers.
-enum TextureUnit : unsigned { UNIT_VOXELS = 0, UNIT_TABLE = 1, UNIT_OPAQUE_DEPTH = 2 };
+enum TextureUnit : unsigned {
+    UNIT_VOXELS,
+    UNIT_TABLE,
+    UNIT_OPAQUE_DEPTH,
+    UNIT_LAYER_DEPTH,
+    UNIT_SORTED_FAR, ///< the four farthest depths of a pixel's surfaces
+    UNIT_SORTED_NEAR,
+    UNIT_FIRST_LAYER ///< and the following: captured depths
+};
 /// Vertex attributes.
-enum Attribute : unsigned { ATTRIBUTE_POSITION = 0, ATTRIBUTE_SLAB = 1, ATTRIBUTE_COLOR = 2 };
+enum Attribute : unsigned {
+    ATTRIBUTE_POSITION,
+    ATTRIBUTE_SLAB,             ///< slabs: nearest and farthest depth
+    ATTRIBUTE_VOXEL_COORDINATE, ///< slices
+    ATTRIBUTE_COLOR,
+    ATTRIBUTE_SPACING, ///< slices: thickness of the layer
+    ATTRIBUTE_COUNT
+};
 
 /// The state that a volume with these features is drawn with: program, blending, depth test without
 /// writes, transparent bin. Shared by all volumes, views and contexts. Thread safe.

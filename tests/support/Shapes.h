@@ -1,5 +1,6 @@
 #pragma once
 
+#include <osg/BlendFunc>
 #include <osg/Geometry>
 
 #include <array>
@@ -20,7 +21,10 @@ inline osg::ref_ptr<osg::Geometry> makeQuad(const std::array<osg::Vec3, 4>& corn
     quad->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLE_FAN, 0, 4));
     if (translucent) {
         osg::StateSet* state = quad->getOrCreateStateSet();
-        state->setMode(GL_BLEND, osg::StateAttribute::ON);
+        // Alpha accumulates as coverage does; OSG's default would square it.
+        state->setAttributeAndModes(new osg::BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE,
+                                                       GL_ONE_MINUS_SRC_ALPHA),
+                                    osg::StateAttribute::ON);
         state->setRenderingHint(osg::StateSet::TRANSPARENT_BIN);
     }
     return quad;

@@ -31,7 +31,7 @@ LogMoments logMoments(double r)
     // The closed form cancels near zero; this series has 16 digits after 12 terms.
     LogMoments m{0.0, 0.0};
     double power = r;
-    for (int k = 1; k < 24; k += 2, power *= r * r) {
+    for (int k = 1; k < 24 && std::fabs(power) > 1e-17; k += 2, power *= r * r) {
         m.first -= power / (k * (k + 2.0));
         m.zeroth += power * r / ((k + 1.0) * (k + 2.0));
     }
@@ -224,6 +224,70 @@ glm::dvec4 TransferIntegral::mean(double front, double back) const
         if (high < after->value)
             return meanOfPiece(_function.evaluate(low), _function.evaluate(high));
     return (integral(high) - integral(low)) / (high - low);
+}
+
+std::vector<glm::dvec4> TransferIntegral::tabulate(int count, double low, double high) const
+{
+    const auto& points = _function.points();
+    std::vector<glm::dvec4> result(static_cast<std::size_t>(std::max(count, 2)));
+    const int n = static_cast<int>(result.size());
+    std::size_t after = 0; // first point beyond a
+    double a = low;
+    glm::dvec4 colorA = _function.evaluate(a);
+    for (int i = 1; i < n; ++i) {
+        const double b = valueOf(i, n, low, high);
+        while (after < points.size() && points[after].value <= a)
+            ++after;
+        glm::dvec4 colorB, step;
+        if (after == points.size() || (after == 0 && b < points[0].value)) {
+            colorB = colorA;
+            step = emission(colorA);
+        } else if (after > 0 && b < points[after].value) {
+            const auto &p = points[after - 1], &q = points[after];
+            const double t = (b - p.value) / (q.value - p.value);
+            colorB = (1.0 - t) * p.color + t * q.color;
+            step = meanOfPiece(colorA, colorB);
+        } else {
+            colorB = _function.evaluate(b);
+            step = mean(a, b);
+        }
+        result[static_cast<std::size_t>(i)] = result[static_cast<std::size_t>(i) - 1] + step;
+        a = b;
+        colorA = colorB;
+    }
+    return result;
+}
+
+WindowError windowError(const TransferFunction& function, double low, double high, double width)
+{
+    WindowError worst;
+    if (!(low < high) || !(width > 0.0)) return worst;
+    const TransferIntegral integral(function);
+    const auto shown = [](const glm::dvec4& emitted) {
+        const double opacity = opacityFromExtinction(emitted.a, 1.0);
+        const double scale = emitted.a > 0.0 ? opacity / emitted.a : 0.0;
+        return glm::dvec4(scale * glm::dvec3(emitted), opacity);
+    };
+    const auto compare = [&](double value) {
+        const double a = std::max(value - 0.5 * width, low),
+                     b = std::min(value + 0.5 * width, high);
+        if (!(a < b)) return;
+        const glm::dvec4 d =
+            shown(integral.mean(a, b)) - shown(emission(function.evaluate(0.5 * (a + b))));
+        for (int c = 0; c < 4; ++c)
+            if (std::fabs(d[c]) > worst.error) worst = {std::fabs(d[c]), value};
+    };
+    const int count = static_cast<int>(std::min(std::ceil(8.0 * (high - low) / width), 65536.0));
+    for (int i = 0; i <= count; ++i)
+        compare(valueOf(i, count + 1, low, high));
+    // Points may lie much closer than a width; one for every eighth of it is enough.
+    double last = low - width;
+    for (const auto& p : function.points())
+        if (p.value >= low && p.value <= high && p.value - last > width / 8.0) {
+            compare(p.value);
+            last = p.value;
+        }
+    return worst;
 }
 
 PreIntegratedTable preIntegrate(const TransferFunction& function, int count, double low,

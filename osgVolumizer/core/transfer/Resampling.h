@@ -2,6 +2,8 @@
 
 #include "TransferFunction.h"
 
+#include <cmath>
+
 namespace osgVolumizer {
 namespace core {
 
@@ -16,18 +18,20 @@ enum class TexelPlaces : int
 /// one unit, between the function and `count` texels of tabulateExtinction() with linear
 /// interpolation between them (constant beyond the outermost). Sampled at the function's points, on
 /// both sides of each, and at several places between any two texels: exact to about 5 % of itself.
+/// Once above `stopAbove` it stops looking, and returns what it found.
 OSGVOLUMIZER_CORE_EXPORT double resamplingError(const TransferFunction& function, int count,
-                                                double low, double high, TexelPlaces places);
+                                                double low, double high, TexelPlaces places,
+                                                double stopAbove = INFINITY);
 
 struct TexelChoice
 {
     int count = 2;
-    double error = 0.0; ///< resamplingError() of it
+    double error = 0.0; ///< resamplingError() of it; at least this where above the tolerance
 };
 
 /// The smallest count tried (2^k, 2^k + 1, and multiples of the function's own steps where its
-/// points lie evenly) whose error is at most `tolerance`; where none is, as with a jump, the one
-/// with the least error. maximum >= 2.
+/// points lie evenly) whose error is at most `tolerance`; where none is, as with a jump, `maximum`.
+/// maximum >= 2.
 OSGVOLUMIZER_CORE_EXPORT TexelChoice chooseTexelCount(const TransferFunction& function, double low,
                                                       double high, TexelPlaces places,
                                                       double tolerance = 1e-4, int maximum = 4096);

@@ -100,10 +100,21 @@ std::vector<glm::vec4> TransferFunction::tabulateExtinction(int count, double lo
 {
     std::vector<glm::vec4> texels(static_cast<std::size_t>(std::max(count, 2)));
     const double n = static_cast<double>(texels.size());
+    std::size_t after = 0; // first point beyond the value, while values ascend
     for (std::size_t i = 0; i < texels.size(); ++i) {
         const double t =
             texelCenters ? (static_cast<double>(i) + 0.5) / n : static_cast<double>(i) / (n - 1.0);
-        const glm::dvec4 color = evaluate((1.0 - t) * low + t * high);
+        const double value = (1.0 - t) * low + t * high;
+        while (after < _points.size() && _points[after].value <= value)
+            ++after;
+        glm::dvec4 color;
+        if (low <= high && after > 0 && after < _points.size()) {
+            const Point &a = _points[after - 1], &b = _points[after];
+            const double f = (0.5 * value - 0.5 * a.value) / (0.5 * b.value - 0.5 * a.value);
+            color = (1.0 - f) * a.color + f * b.color;
+        } else {
+            color = evaluate(value);
+        }
         texels[i] =
             glm::vec4(glm::dvec4(color.r, color.g, color.b, extinctionFromOpacity(color.a)));
     }

@@ -11,8 +11,8 @@ namespace osgVolumizer {
 namespace core {
 
 /// Colour and opacity as piecewise linear functions of one value: linear between points, constant
-/// beyond the first and last. Two points at one value make a jump; the later one holds from there on.
-/// Colours are linear RGB, straight; opacity (alpha) is that of a layer one opacity unit thick.
+/// beyond the first and last. Two points at one value make a jump; the later one holds from there
+/// on. Colours are linear RGB, straight; opacity (alpha) is that of a layer one opacity unit thick.
 class OSGVOLUMIZER_CORE_EXPORT TransferFunction
 {
 public:
@@ -40,8 +40,9 @@ public:
     /// Values mapped by value -> scale * value + offset, scale > 0.
     TransferFunction mapped(double scale, double offset) const;
 
-    /// `count` texels that tabulate (r, g, b, extinction per opacity unit) over [low, high], texel i at
-    /// low + (i + 0.5)/count * (high - low) when `texelCenters`, else at i/(count-1); count >= 2.
+    /// `count` texels that tabulate (r, g, b, extinction per opacity unit) over [low, high], texel
+    /// i at low + (i + 0.5)/count * (high - low) when `texelCenters`, else at i/(count-1); count
+    /// >= 2.
     std::vector<glm::vec4> tabulateExtinction(int count, double low, double high,
                                               bool texelCenters) const;
 
@@ -49,8 +50,8 @@ private:
     std::vector<Point> _points;
 };
 
-/// Extinction coefficient of a layer: -ln(1 - alpha), with alpha held at 1 - 2^-24 so that an opaque
-/// entry stays finite (it lets 6e-8 of the light through per unit).
+/// Extinction coefficient of a layer: -ln(1 - alpha), with alpha held at 1 - 2^-24 so that an
+/// opaque entry stays finite (it lets 6e-8 of the light through per unit).
 OSGVOLUMIZER_CORE_EXPORT double extinctionFromOpacity(double alpha);
 /// Opacity of a segment: 1 - exp(-extinction * length).
 OSGVOLUMIZER_CORE_EXPORT double opacityFromExtinction(double extinctionPerUnit, double lengthUnits);

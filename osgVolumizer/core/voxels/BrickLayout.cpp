@@ -1,5 +1,7 @@
 #include "BrickLayout.h"
 
+#include "../Text.h"
+
 #include <algorithm>
 
 namespace osgVolumizer {
@@ -24,11 +26,6 @@ std::int64_t bricksOnAxis(std::int64_t size, std::int64_t brick, int overlap, Pa
     return rest && partial != PartialBricks::TRUNCATE ? whole + 1 : whole;
 }
 
-std::string text(const glm::ivec3& v)
-{
-    return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
-}
-
 } // namespace
 
 Result<BrickLayout> BrickLayout::create(const glm::ivec3& size, const glm::ivec3& brickSize,
@@ -46,11 +43,11 @@ Result<BrickLayout> BrickLayout::create(const glm::ivec3& size, const glm::ivec3
     for (int axis = 0; axis < 3; ++axis) {
         if (size[axis] < 1)
             return Status(ErrorCode::VALUE_INVALID,
-                          "volume size " + text(size) + " is below 1 on an axis", axis);
+                          "volume size " + formatTriple(size) + " is below 1 on an axis", axis);
         if (brickSize[axis] <= overlap)
             return Status(ErrorCode::VALUE_INVALID,
-                          "brick size " + text(brickSize) + " does not exceed the overlap " +
-                              std::to_string(overlap),
+                          "brick size " + formatTriple(brickSize) +
+                              " does not exceed the overlap " + std::to_string(overlap),
                           axis);
         layout._brickSize[axis] = std::min(brickSize[axis], size[axis]);
         layout._count[axis] =
@@ -62,8 +59,9 @@ Result<BrickLayout> BrickLayout::create(const glm::ivec3& size, const glm::ivec3
     constexpr std::int64_t maximum = std::int64_t(1) << 31;
     const std::int64_t slice = std::int64_t(layout._count.x) * layout._count.y; // below 2^62
     if (slice > maximum || slice * layout._count.z > maximum)
-        return Status(ErrorCode::TOO_LARGE, "volume size " + text(size) + " in bricks of " +
-                                                text(brickSize) + " makes more than 2^31 bricks");
+        return Status(ErrorCode::TOO_LARGE, "volume size " + formatTriple(size) + " in bricks of " +
+                                                formatTriple(brickSize) +
+                                                " makes more than 2^31 bricks");
     return layout;
 }
 

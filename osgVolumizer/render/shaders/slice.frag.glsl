@@ -6,7 +6,7 @@ in vec4 vertexColor;
 #endif
 out vec4 fragColor;
 
-uniform float spacing; // between surfaces
+flat in float spacing;
 uniform vec3 surfaceNormal; // spacing is counted along it (frame units); planes
 #ifdef SPHERICAL
 uniform mat3 rayDirectionEye;
@@ -22,7 +22,15 @@ void main()
     // A ray along the planes would see an infinitely thick layer: it sees no plane either.
     float layer = spacing / max(abs(dot(surfaceNormal, direction)), 1e-12);
 #endif
+#ifdef PREINTEGRATED
+    // The layer's own ends; one frame unit of the ray is `direction`.
+    vec3 halfLayer = 0.5 * layer * direction;
+    float entry0 = tableEntry(voxelCoordinate - halfLayer);
+    float entry1 = tableEntry(voxelCoordinate + halfLayer);
+    vec4 c = classifyRun(entry0, tableIntegral(entry0), entry1, tableIntegral(entry1));
+#else
     vec4 c = classify(voxelCoordinate);
+#endif
 #ifdef VERTEX_COLORS
 #ifdef VOXELS
     c *= vertexColor;

@@ -1,12 +1,14 @@
 layout(location = 0) in vec3 position;
 #ifdef VOXEL_COORDINATES
-layout(location = 1) in vec3 voxelCoordinateIn;
+layout(location = 2) in vec3 voxelCoordinateIn;
 #endif
 #ifdef VERTEX_COLORS
-layout(location = 2) in vec4 colorIn;
+layout(location = 3) in vec4 colorIn;
 out vec4 vertexColor;
 #endif
+layout(location = 4) in float spacingIn;
 out vec3 voxelCoordinate;
+flat out float spacing; // between surfaces
 uniform mat4 frameToClip;
 
 void main()
@@ -19,5 +21,6 @@ void main()
 #ifdef VERTEX_COLORS
     vertexColor = colorIn;
 #endif
+    spacing = spacingIn;
     gl_Position = frameToClip * vec4(position, 1.0);
 }

@@ -1,38 +1,97 @@
-// Colour and extinction of a point, shared by slices and slabs.
+// Colour and extinction of a point or a piece of a ray, shared by slices and slabs.
 
 #ifdef VOXELS
-uniform sampler3D voxels;
-uniform vec3 textureScale;  // voxel coordinate -> texture coordinate
-uniform vec3 textureOffset;
+#ifndef RGBA
+uniform samplerBuffer lookupTable; // r, g, b, extinction in bits (-log2 of transmittance) per opacity unit
+uniform vec2 valueToEntry;         // texel -> entry of the table
+uniform float lastEntry;
+
+vec4 entryAt(float entry)
+{
+    float held = clamp(entry, 0.0, lastEntry);
+#ifdef SMOOTH_TABLE
+    int low = int(held); // one more texel than entries, for the last
+    return mix(texelFetch(lookupTable, low), texelFetch(lookupTable, low + 1), fract(held));
+#else
+    return texelFetch(lookupTable, int(held + 0.5));
 #endif
-uniform sampler2D lookupTable; // r, g, b, extinction in bits (-log2 of transmittance) per opacity unit
-uniform vec2 valueToTable;     // texel -> coordinate in the table
+}
+#endif
 
 // rgb: emitted colour; a: extinction, bits per opacity unit.
+vec4 classifyTexel(TEXEL texel)
+{
+#ifdef RGBA
+    return vec4(texel.rgb, -log2(max(1.0 - texel.a, 5.9604645e-8)));
+#else
+    return entryAt(texel * valueToEntry.x + valueToEntry.y);
+#endif
+}
+#endif
+
+#ifdef BEFORE
+// Adds one classified sample: extinction times colour, and extinction.
+void addSample(ivec3 i, float weight, inout vec4 sum)
+{
+    vec4 c = classifyTexel(texelAt(i));
+    sum += weight * vec4(c.rgb * c.a, c.a);
+}
+#endif
+
 vec4 classify(vec3 voxelCoordinate)
 {
 #ifndef VOXELS
     return vec4(1.0, 1.0, 1.0, 1.0);
-#elif defined(RGBA)
-    vec4 c = texture(voxels, voxelCoordinate * textureScale + textureOffset);
-    return vec4(c.rgb, -log2(max(1.0 - c.a, 5.9604645e-8)));
+#elif defined(BEFORE)
+    ivec3 cell;
+    vec3 f;
+    cellAt(voxelCoordinate, cell, f);
+    vec4 sum = vec4(0.0);
+#ifdef CUBIC
+    vec4 wx = cubicWeights(f.x), wy = cubicWeights(f.y), wz = cubicWeights(f.z);
+    for (int k = 0; k < 4; ++k)
+        for (int j = 0; j < 4; ++j)
+            for (int i = 0; i < 4; ++i)
+                addSample(cell + ivec3(i, j, k) - 1, wx[i] * wy[j] * wz[k], sum);
 #else
-    float value = texture(voxels, voxelCoordinate * textureScale + textureOffset).r;
-    return textureLod(lookupTable, vec2(value * valueToTable.x + valueToTable.y, 0.5), 0.0);
+    for (int k = 0; k < 2; ++k)
+        for (int j = 0; j < 2; ++j)
+            for (int i = 0; i < 2; ++i)
+                addSample(cell + ivec3(i, j, k),
+                          (i == 1 ? f.x : 1.0 - f.x) * (j == 1 ? f.y : 1.0 - f.y) *
+                              (k == 1 ? f.z : 1.0 - f.z),
+                          sum);
+#endif
+    return sum.a > 0.0 ? vec4(max(sum.rgb, 0.0) / sum.a, sum.a) : vec4(0.0);
+#else
+    return classifyTexel(voxelAt(voxelCoordinate));
 #endif
 }
 
-// The pixel's ray, in the frame of the vertices: origin + t * direction, t in eye units along the view axis
-// from the reference depth, the same for every pixel. Linear in window coordinates for every
-// perspective, orthographic and off-axis projection.
-uniform vec2 windowCenter;
-uniform mat3 rayOrigin;    // times (dx, dy, 1)
-uniform mat3 rayDirection;
-uniform mat3 frameToUnits; // frame vector -> vector in opacity units
+#ifdef PREINTEGRATED
+uniform vec4 tableLow, tableHigh; // extinction times colour, extinction: beyond the ends
 
-void pixelRay(out vec3 origin, out vec3 direction)
+// The entry nearest to the value at a point; beyond the table's ends too.
+float tableEntry(vec3 voxelCoordinate)
 {
-    vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
-    origin = rayOrigin * window;
-    direction = rayDirection * window;
+    return floor(voxelAt(voxelCoordinate) * valueToEntry.x + valueToEntry.y + 0.5);
 }
+
+// The table's integral from its first entry to another.
+vec4 tableIntegral(float entry)
+{
+    float held = clamp(entry, 0.0, lastEntry);
+    return texelFetch(lookupTable, int(held + lastEntry + 1.5)) + min(entry, 0.0) * tableLow +
+           max(entry - lastEntry, 0.0) * tableHigh;
+}
+
+// Mean over the entries that a piece of the ray runs through.
+vec4 classifyRun(float entry0, vec4 integral0, float entry1, vec4 integral1)
+{
+    float run = entry1 - entry0;
+    // In a short run the table is as good, and a difference of integrals would lose its digits.
+    if (abs(run) <= 4.0) return entryAt(0.5 * (entry0 + entry1));
+    vec4 mean = max((integral1 - integral0) / run, 0.0);
+    return vec4(mean.rgb / max(mean.a, 1e-12), mean.a);
+}
+#endif

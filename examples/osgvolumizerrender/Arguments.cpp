@@ -1,0 +1,172 @@
+#include "Arguments.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <map>
+
+using osgVolumizer::ErrorCode;
+using osgVolumizer::Result;
+using osgVolumizer::Status;
+using osgVolumizer::VolumeAppearance;
+
+namespace {
+
+Status invalid(const std::string& text)
+{
+    return Status(ErrorCode::VALUE_INVALID, text);
+}
+
+/// The words after an option, taken one by one.
+struct Words
+{
+    int argc;
+    const char* const* argv;
+    int next;
+    std::string option;
+    Status status;
+
+    std::string text()
+    {
+        if (!status.ok()) return {};
+        if (next < argc) return argv[next++];
+        status = invalid("Option " + option + " lacks a value.");
+        return {};
+    }
+    double number(double low, double high)
+    {
+        const std::string word = text();
+        if (!status.ok()) return 0.0;
+        char* end = nullptr;
+        const double value = std::strtod(word.c_str(), &end);
+        if (word.empty() || *end || !std::isfinite(value) || value < low || value > high)
+            status = invalid("Option " + option + " cannot take the value '" + word + "'.");
+        return value;
+    }
+    int integer(int low, int high)
+    {
+        const double value = number(low, high);
+        if (status.ok() && value != std::floor(value))
+            status = invalid("Option " + option + " takes whole numbers only.");
+        return status.ok() ? int(value) : 0;
+    }
+    osg::Vec3d vector()
+    {
+        osg::Vec3d v;
+        for (int i = 0; i < 3; ++i)
+            v[i] = number(-1e30, 1e30);
+        return v;
+    }
+    osg::Vec4 color()
+    {
+        osg::Vec4 c;
+        for (int i = 0; i < 4; ++i)
+            c[i] = float(number(-1e30, 1e30));
+        return c;
+    }
+};
+
+VolumeAppearance::Technique technique(Words& words)
+{
+    const std::string name = words.text();
+    if (name == "slices") return VolumeAppearance::SLICES;
+    if (name == "slabs") return VolumeAppearance::SLABS;
+    if (words.status.ok() && name != "auto")
+        words.status =
+            invalid("Option --technique takes slices, slabs or auto, not '" + name + "'.");
+    return VolumeAppearance::AUTOMATIC;
+}
+
+using Handler = std::function<void(Arguments&, Words&)>;
+
+const std::map<std::string, Handler>& handlers()
+{
+    constexpr double tiny = 1e-300, huge = 1e30;
+    static const std::map<std::string, Handler> table{
+        {"--size",
+         [](Arguments& a, Words& w) {
+             a.width = w.integer(1, 16384);
+             a.height = w.integer(1, 16384);
+         }},
+        {"--eye", [](Arguments& a, Words& w) { a.eye = w.vector(); }},
+        {"--center", [](Arguments& a, Words& w) { a.center = w.vector(); }},
+        {"--up", [](Arguments& a, Words& w) { a.up = w.vector(); }},
+        {"--fovy", [](Arguments& a, Words& w) { a.fovyDegrees = w.number(1e-3, 179.0); }},
+        {"--ortho",
+         [](Arguments& a, Words& w) { a.orthographicHalfHeight = w.number(tiny, huge); }},
+        {"--background", [](Arguments& a, Words& w) { a.background = w.color(); }},
+        {"--period", [](Arguments& a, Words& w) { a.period = w.number(tiny, huge); }},
+        {"--technique", [](Arguments& a, Words& w) { a.technique = technique(w); }},
+        {"--output", [](Arguments& a, Words& w) { a.output = w.text(); }},
+        {"--stats", [](Arguments& a, Words& w) { a.stats = w.text(); }},
+        {"--frames", [](Arguments& a, Words& w) { a.frames = w.integer(1, 1000000); }},
+        {"-O", [](Arguments& a, Words& w) { a.readerOptions = w.text(); }},
+        {"--help", [](Arguments& a, Words&) { a.help = true; }},
+    };
+    return table;
+}
+
+Status checkWhole(const Arguments& a)
+{
+    if (a.help) return Status();
+    if (a.scene.empty()) return invalid("No scene is named; see --help.");
+    if (a.output.empty() && a.stats.empty())
+        return invalid("Nothing is asked for: give --output, --stats, or both.");
+    if (a.fovyDegrees && a.orthographicHalfHeight)
+        return invalid("Options --fovy and --ortho exclude each other.");
+    if (!a.eye && (a.center || a.up)) return invalid("Options --center and --up need --eye.");
+    if (a.eye && a.center && *a.eye == *a.center)
+        return invalid("Options --eye and --center name the same point.");
+    return Status();
+}
+
+} // namespace
+
+Result<Arguments> parseArguments(int argc, const char* const* argv)
+{
+    Arguments arguments;
+    Words words{argc, argv, 1, {}, {}};
+    while (words.next < argc) {
+        words.option = argv[words.next++];
+        const auto handler = handlers().find(words.option);
+        if (handler != handlers().end())
+            handler->second(arguments, words);
+        else if (words.option.size() > 1 && words.option[0] == '-')
+            return invalid("There is no option '" + words.option + "'; see --help.");
+        else if (!arguments.scene.empty())
+            return invalid("Two scenes are named: '" + arguments.scene + "' and '" + words.option +
+                           "'.");
+        else
+            arguments.scene = words.option;
+        if (!words.status.ok()) return words.status;
+    }
+    const Status status = checkWhole(arguments);
+    if (!status.ok()) return status;
+    return arguments;
+}
+
+const char* usage()
+{
+    return R"(osgvolumizerrender SCENE [options]
+Renders a scene without a window and writes the picture, the statistics, or both.
+
+  --output FILE         .exr (or .tif): 32-bit float RGBA, linear, premultiplied, rays through pixel
+                        centres; .png: 8 bit, for people, the bytes that osgviewer would show,
+                        with straight alpha
+  --stats FILE          JSON: milliseconds per frame (glFinish inside) and the volumes' counters
+  --frames N            frames to time, after one that is not (1)
+  --size W H            pixels (512 512)
+  --eye X Y Z           where the viewer is; without it, the whole scene is shown
+  --center X Y Z        what is looked at (the scene's centre)
+  --up X Y Z            what is upwards (0 0 1)
+  --fovy DEGREES        vertical field of view (30)
+  --ortho HALF_HEIGHT   parallel projection, half the picture's height in world units
+  --background R G B A  premultiplied (0 0 0 0)
+  --period P            distance between samples, in voxels, for every volume
+  --technique NAME      slices, slabs or auto, for every volume
+  -O STRING             options for the reader of SCENE, e.g. "spacing=1,1,1.5 table=bone.lut"
+
+Lights and optimizer as in osgviewer. Exit code 0; 1 where the scene cannot be read, rendered or
+written; 2 for a wrong command line.
+)";
+}

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <osgVolumizer/VolumeAppearance.h>
+
+#include <osg/Vec3d>
+#include <osg/Vec4>
+
+#include <optional>
+#include <string>
+
+/// What the command line asks for.
+struct Arguments
+{
+    std::string scene;
+    std::string readerOptions; ///< for osgDB's readers, e.g. those of .volume
+    int width = 512;
+    int height = 512;
+    std::optional<osg::Vec3d> eye, center, up;
+    std::optional<double> fovyDegrees, orthographicHalfHeight;
+    osg::Vec4 background{0.0f, 0.0f, 0.0f, 0.0f}; ///< premultiplied
+    std::optional<double> period;
+    std::optional<osgVolumizer::VolumeAppearance::Technique> technique;
+    std::string output;
+    std::string stats;
+    int frames = 1;
+    bool help = false;
+};
+
+/// Refuses unknown options, missing or surplus values, and values that make no sense, naming both.
+osgVolumizer::Result<Arguments> parseArguments(int argc, const char* const* argv);
+/// The text of --help.
+const char* usage();

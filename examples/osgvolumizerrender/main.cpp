@@ -1,0 +1,110 @@
+// osgvolumizerrender: a scene in, a picture and its statistics out, without a window.
+
+#include "Arguments.h"
+#include "StatsFile.h"
+
+#include <support/PictureFile.h>
+#include <support/SceneRenderer.h>
+
+#include <osgDB/ReadFile>
+#include <osgUtil/Optimizer>
+
+#include <iostream>
+
+using namespace osgVolumizer;
+
+namespace {
+
+/// Sets what the command line says on every appearance.
+class Apply : public osg::NodeVisitor
+{
+public:
+    explicit Apply(const Arguments& arguments)
+        : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _arguments(arguments)
+    {
+    }
+    void apply(osg::Group& group) override
+    {
+        if (auto* appearance = dynamic_cast<VolumeAppearance*>(&group)) {
+            if (_arguments.technique) appearance->setTechnique(*_arguments.technique);
+            if (_arguments.period) {
+                const double p = *_arguments.period;
+                const Status set = appearance->setSamplingPeriod(osg::Vec3d(p, p, p));
+                if (!set.ok()) status = set;
+            }
+        }
+        traverse(group);
+    }
+    Status status;
+
+private:
+    const Arguments& _arguments;
+};
+
+support::RenderOptions viewOf(const Arguments& arguments, const osg::BoundingSphere& bound)
+{
+    support::RenderOptions options;
+    options.size(arguments.width, arguments.height);
+    options.background = arguments.background;
+    options.light = true;
+    if (arguments.orthographicHalfHeight)
+        options.orthographic(*arguments.orthographicHalfHeight);
+    else
+        options.perspective(arguments.fovyDegrees.value_or(30.0));
+    if (arguments.eye)
+        options.lookAt(*arguments.eye, arguments.center.value_or(osg::Vec3d(bound.center())),
+                       arguments.up.value_or(osg::Vec3d(0.0, 0.0, 1.0)));
+    else
+        options.frameScene(bound);
+    return options;
+}
+
+Status run(const Arguments& arguments)
+{
+    osg::ref_ptr<osgDB::Options> readerOptions = new osgDB::Options(arguments.readerOptions);
+    osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(arguments.scene, readerOptions.get());
+    if (!scene)
+        return Status(ErrorCode::FILE_UNREADABLE,
+                      "Cannot read a scene from '" + arguments.scene + "'.");
+    Apply apply(arguments);
+    scene->accept(apply);
+    if (!apply.status.ok()) return apply.status;
+    osgUtil::Optimizer().optimize(scene.get());
+
+    const support::RenderOptions options = viewOf(arguments, scene->getBound());
+    if (!options.view.valid())
+        return Status(ErrorCode::VALUE_INVALID, "The eye, centre and up vector give no view.");
+    support::SceneRenderer renderer(scene.get(), options);
+    Statistics statistics;
+    renderer.render();
+    statistics.firstFrame = renderer.counters();
+    renderer.options().frames = static_cast<unsigned>(arguments.frames);
+    const support::FloatImage image = renderer.render();
+    if (!renderer.status().ok()) return renderer.status();
+    statistics.milliseconds = renderer.milliseconds();
+    statistics.latestFrame = renderer.counters();
+
+    Status status;
+    if (!arguments.output.empty()) status = support::writePicture(image, arguments.output);
+    if (status.ok() && !arguments.stats.empty()) status = writeStatistics(statistics, arguments);
+    return status;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    const Result<Arguments> arguments = parseArguments(argc, argv);
+    if (!arguments.ok()) {
+        std::cerr << "osgvolumizerrender: " << arguments.status.text << "\n";
+        return 2;
+    }
+    if (arguments->help) {
+        std::cout << usage();
+        return 0;
+    }
+    const Status status = run(*arguments);
+    if (status.ok()) return 0;
+    std::cerr << "osgvolumizerrender: " << status.text << "\n";
+    return 1;
+}

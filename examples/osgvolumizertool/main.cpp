@@ -1,0 +1,151 @@
+// osgvolumizertool: makes volume files. Each command writes one 3D TIFF, a page a slice, which
+// OpenImageIO, ImageJ and `osgviewer file.tif.volume` read.
+
+#include "Cubes.h"
+#include "ProgressLine.h"
+
+#include <osgVolumizer/ReadVoxels.h>
+#include <osgVolumizer/WriteVoxels.h>
+#include <osgVolumizer/core/Text.h>
+
+#include <functional>
+#include <iostream>
+#include <string>
+#include <vector>
+
+using namespace osgVolumizer;
+
+namespace {
+
+const char* const help =
+    R"(osgvolumizertool: makes volume files
+
+  osgvolumizertool mkcubes WIDTH HEIGHT DEPTH EDGE OUT.tif [--type TYPE]
+      A test pattern: cubes of EDGE voxels, brightest in the middle. TYPE is int8, uint8 (the default),
+      int16, uint16, int32, uint32, half, float32 or float64.
+
+  osgvolumizertool raw2volume FILE.WIDTH,HEIGHT,DEPTH,TYPE[,HEADER[,big|little]] OUT.tif
+      A raw file, x fastest, as in engine.raw.256,256,110,uint8. HEADER bytes at its start are skipped; the
+      byte order is little unless said otherwise.
+
+  osgvolumizertool stack2volume IN... OUT.tif
+      2D images of one size, a slice each: a folder (in natural order), a numbered pattern ("s%03d.png",
+      "s###.png"), or the files one by one.
+
+Options: --quiet (no progress), --help.
+Exit status: 0 done, 1 a file cannot be read or written, 2 the command line is wrong.
+)";
+
+constexpr int DONE = 0, FAILED = 1, USAGE = 2;
+
+int fail(int code, const std::string& message)
+{
+    std::cerr << "osgvolumizertool: " << message << '\n';
+    if (code == USAGE) std::cerr << "See osgvolumizertool --help.\n";
+    return code;
+}
+
+int write(const VoxelSource& source, const std::string& fileName, bool quiet)
+{
+    Status status;
+    {
+        ProgressLine line("writing " + fileName, quiet);
+        status = writeVoxels(source, fileName, std::ref(line));
+    }
+    if (!status.ok()) return fail(FAILED, status.text);
+    const VoxelSource::Description d = source.describe();
+    std::cout << fileName << ": " << core::formatTriple(d.size) << " voxels of "
+              << (d.components == 4 ? "4 x " : "") << voxelTypeName(d.type) << '\n';
+    return DONE;
+}
+
+int convert(const std::string& in, const std::string& out, bool quiet)
+{
+    Result<osg::ref_ptr<Voxels>> voxels(Status{});
+    {
+        ProgressLine line("reading " + in, quiet);
+        voxels = readVoxels(in, nullptr, std::ref(line));
+    }
+    if (!voxels.ok()) return fail(FAILED, voxels.status.text);
+    return write(*(*voxels)->getSource(), out, quiet);
+}
+
+int makeCubes(const std::vector<std::string>& arguments, VoxelType type, bool quiet)
+{
+    if (arguments.size() != 5)
+        return fail(USAGE, "mkcubes takes WIDTH HEIGHT DEPTH EDGE OUT.tif, not " +
+                               std::to_string(arguments.size()) + " arguments");
+    static const char* const names[] = {"WIDTH", "HEIGHT", "DEPTH", "EDGE"};
+    std::int64_t numbers[4];
+    for (std::size_t i = 0; i < 4; ++i)
+        if (!core::parseInteger(arguments[i], numbers[i]) || numbers[i] < 1 || numbers[i] > 65536)
+            return fail(USAGE, "mkcubes: " + std::string(names[i]) + " is \"" + arguments[i] +
+                                   "\", not a number of voxels from 1 to 65536");
+    const glm::ivec3 size(static_cast<int>(numbers[0]), static_cast<int>(numbers[1]),
+                          static_cast<int>(numbers[2]));
+    osg::ref_ptr<Cubes> cubes = new Cubes(size, static_cast<int>(numbers[3]), type);
+    return write(*cubes, arguments[4], quiet);
+}
+
+int stackToVolume(std::vector<std::string> arguments, bool quiet)
+{
+    if (arguments.size() < 2) return fail(USAGE, "stack2volume takes IN... OUT.tif");
+    const std::string out = arguments.back();
+    arguments.pop_back();
+    if (arguments.size() == 1) return convert(arguments[0], out, quiet);
+    Result<osg::ref_ptr<Voxels>> voxels(Status{});
+    {
+        ProgressLine line("reading " + std::to_string(arguments.size()) + " slices", quiet);
+        voxels = readSlices(arguments, nullptr, std::ref(line));
+    }
+    if (!voxels.ok()) return fail(FAILED, voxels.status.text);
+    return write(*(*voxels)->getSource(), out, quiet);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    bool quiet = false;
+    std::string typeName = "uint8";
+    bool typeGiven = false;
+    for (std::size_t i = 0; i < arguments.size();) {
+        const std::string option = arguments[i];
+        if (option.compare(0, 2, "--") != 0) {
+            ++i;
+            continue;
+        }
+        arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i));
+        if (option == "--help") {
+            std::cout << help;
+            return DONE;
+        } else if (option == "--quiet") {
+            quiet = true;
+        } else if (option == "--type" && i < arguments.size()) {
+            typeName = arguments[i];
+            typeGiven = true;
+            arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i));
+        } else {
+            return fail(USAGE, "option \"" + option + "\" is unknown, or lacks its value");
+        }
+    }
+    if (arguments.empty()) return fail(USAGE, "no command");
+    const std::string command = arguments.front();
+    arguments.erase(arguments.begin());
+    if (typeGiven && command != "mkcubes")
+        return fail(USAGE, "option \"--type\" is for mkcubes only");
+    const Result<VoxelType> type = voxelTypeFromName(typeName);
+    if (!type.ok()) return fail(USAGE, type.status.text);
+    if (command == "mkcubes") return makeCubes(arguments, *type, quiet);
+    if (command == "raw2volume") {
+        if (arguments.size() != 2)
+            return fail(USAGE, "raw2volume takes FILE.WIDTH,HEIGHT,DEPTH,TYPE and OUT.tif");
+        if (arguments[0].find(',') == std::string::npos)
+            return fail(USAGE, "raw2volume: \"" + arguments[0] +
+                                   "\" does not end in .WIDTH,HEIGHT,DEPTH,TYPE");
+        return convert(arguments[0], arguments[1], quiet);
+    }
+    if (command == "stack2volume") return stackToVolume(arguments, quiet);
+    return fail(USAGE, "command \"" + command + "\" is none of mkcubes, raw2volume, stack2volume");
+}

@@ -1,0 +1,139 @@
+#include "ReadVoxels.h"
+
+#include "io/VoxelFiles.h"
+#include "io/VoxelOptions.h"
+
+#include <osgDB/FileUtils>
+#include <osgDB/Registry>
+
+#include <exception>
+
+namespace osgVolumizer {
+
+namespace {
+
+std::vector<std::string> searchFolders(const osgDB::Options* options)
+{
+    std::vector<std::string> folders;
+    if (options)
+        folders.assign(options->getDatabasePathList().begin(),
+                       options->getDatabasePathList().end());
+    const osgDB::FilePathList& global = osgDB::Registry::instance()->getDataFilePathList();
+    folders.insert(folders.end(), global.begin(), global.end());
+    return folders;
+}
+
+Result<io::Source> readFiles(const Result<std::vector<std::string>>& paths,
+                             const Progress& progress)
+{
+    if (!paths.ok()) return paths.status;
+    return io::readStack(*paths, progress);
+}
+
+Result<io::Source> readSource(std::string name, const osgDB::Options* options,
+                              const Progress& progress)
+{
+    while (name.size() > 1 && name.back() == '/')
+        name.pop_back();
+    const std::string path = name.empty() ? name : osgDB::findDataFile(name, options);
+    if (!path.empty()) {
+        if (osgDB::fileType(path) == osgDB::DIRECTORY)
+            return readFiles(io::listFolder(path), progress);
+        return io::readImage(path, progress);
+    }
+    if (io::looksRaw(name)) {
+        const Result<io::RawName> raw = io::parseRawName(name);
+        if (!raw.ok()) return raw.status;
+        const std::string rawPath = osgDB::findDataFile(raw->fileName, options);
+        if (rawPath.empty())
+            return Status(ErrorCode::FILE_NOT_FOUND,
+                          "raw file " + raw->fileName + " was not found");
+        return io::readRaw(*raw, rawPath, progress);
+    }
+    if (io::looksLikePattern(name))
+        return readFiles(io::listPattern(name, searchFolders(options)), progress);
+    return Status(ErrorCode::FILE_NOT_FOUND, "volume \"" + name + "\" was not found");
+}
+
+Status apply(Voxels& voxels, const io::VoxelOptions& options)
+{
+    Status status;
+    if (options.spacing)
+        status = voxels.setSpacing(
+            osg::Vec3d(options.spacing->x, options.spacing->y, options.spacing->z));
+    if (status.ok() && options.origin)
+        status =
+            voxels.setOrigin(osg::Vec3d(options.origin->x, options.origin->y, options.origin->z));
+    if (status.ok() && options.range)
+        status = voxels.setRange(osg::Vec2d(options.range->x, options.range->y));
+    if (status.ok() && options.brick) status = voxels.setBrickSize(*options.brick);
+    return status;
+}
+
+/// The voxels of `source`, with what the option string says; `name` is for messages.
+Result<osg::ref_ptr<Voxels>> makeVoxels(const Result<io::Source>& source,
+                                        const io::VoxelOptions& options, const std::string& name)
+{
+    if (!source.ok()) return source.status;
+    osg::ref_ptr<Voxels> voxels = new Voxels;
+    Status status = voxels->setSource(source->get());
+    if (status.ok()) status = apply(*voxels, options);
+    if (!status.ok()) return Status(status.code, name + ": " + status.text, status.index);
+    return voxels;
+}
+
+Result<osg::ref_ptr<Voxels>> read(const std::string& name, const osgDB::Options* options,
+                                  const Progress& progress)
+{
+    const Result<io::VoxelOptions> said =
+        io::parseVoxelOptions(options ? options->getOptionString() : std::string());
+    if (!said.ok()) return Status(said.status.code, name + ": " + said.status.text);
+    Result<osg::ref_ptr<Voxels>> voxels =
+        makeVoxels(readSource(name, options, progress), *said, name);
+    if (!voxels.ok()) return voxels;
+    (*voxels)->setFileName(name);
+    (*voxels)->setFileOptions(said->voxelText());
+    return voxels;
+}
+
+Result<osg::ref_ptr<Voxels>> read(const std::vector<std::string>& names,
+                                  const osgDB::Options* options, const Progress& progress)
+{
+    const Result<io::VoxelOptions> said =
+        io::parseVoxelOptions(options ? options->getOptionString() : std::string());
+    if (!said.ok()) return said.status;
+    if (names.empty()) return Status(ErrorCode::VALUE_INVALID, "a stack of no slices");
+    std::vector<std::string> paths;
+    for (const std::string& name : names) {
+        paths.push_back(osgDB::findDataFile(name, options));
+        if (paths.back().empty())
+            return Status(ErrorCode::FILE_NOT_FOUND, "slice " + name + " was not found",
+                          static_cast<std::int64_t>(paths.size()) - 1);
+    }
+    return makeVoxels(io::readStack(paths, progress), *said, names.front());
+}
+
+} // namespace
+
+Result<osg::ref_ptr<Voxels>> readVoxels(const std::string& name, const osgDB::Options* options,
+                                        const Progress& progress)
+{
+    try {
+        return read(name, options, progress);
+    } catch (const std::exception& e) { // memory, or a path that the system cannot express
+        return Status(ErrorCode::FILE_UNREADABLE, name + " cannot be read: " + e.what());
+    }
+}
+
+Result<osg::ref_ptr<Voxels>> readSlices(const std::vector<std::string>& names,
+                                        const osgDB::Options* options, const Progress& progress)
+{
+    try {
+        return read(names, options, progress);
+    } catch (const std::exception& e) {
+        return Status(ErrorCode::FILE_UNREADABLE,
+                      std::string("slices cannot be read: ") + e.what());
+    }
+}
+
+} // namespace osgVolumizer

@@ -1,0 +1,134 @@
+#include "VoxelSource.h"
+
+#include "core/Text.h"
+#include "core/voxels/VoxelData.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+namespace osgVolumizer {
+
+namespace {
+
+Status checkAxis(const VoxelSource::Description& d, int axis)
+{
+    if (d.size[axis] < 1)
+        return {ErrorCode::VALUE_INVALID,
+                "volume size " + core::formatTriple(d.size) + " is below 1 on an axis", axis};
+    if (!(d.spacing[axis] > 0.0 && std::isfinite(d.spacing[axis])))
+        return {ErrorCode::VALUE_INVALID,
+                "voxel spacing " + std::to_string(d.spacing[axis]) + " is not a positive number",
+                axis};
+    if (!std::isfinite(d.origin[axis]))
+        return {ErrorCode::VALUE_INVALID,
+                "volume origin " + std::to_string(d.origin[axis]) + " is not a finite number",
+                axis};
+    return {};
+}
+
+} // namespace
+
+std::int64_t VoxelSource::Description::sizeInBytes() const
+{
+    return core::voxelBytes(size, type, components);
+}
+
+Status VoxelSource::Description::validate() const
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (Status status = checkAxis(*this, axis); !status.ok()) return status;
+    const int number = static_cast<int>(type);
+    if (number < 0 || number > static_cast<int>(VoxelType::FLOAT64))
+        return {ErrorCode::VALUE_INVALID, "voxel type " + std::to_string(number) + " is unknown"};
+    if (components != 1 && components != 4)
+        return {ErrorCode::VALUE_INVALID,
+                "voxels of " + std::to_string(components) + " components, neither 1 nor 4"};
+    return {};
+}
+
+MemoryVoxelSource::MemoryVoxelSource(const MemoryVoxelSource& o, const osg::CopyOp& op)
+    : VoxelSource(o, op), _description(o._description), _data(o._data)
+{
+    if (!_data || !(op.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)) return;
+    _data.reset();
+    if (allocate(o._description, o._description.sizeInBytes()).ok())
+        std::memcpy(_data.get(), o._data.get(), o.sizeInBytes());
+}
+
+Status MemoryVoxelSource::allocate(const Description& description, std::int64_t maximumBytes)
+{
+    if (Status status = description.validate(); !status.ok()) return status;
+    const std::int64_t bytes = description.sizeInBytes();
+    const std::string what = "a volume of " + core::formatTriple(description.size) +
+                             " voxels needs " + std::to_string(bytes) + " bytes, more than ";
+    if (bytes > maximumBytes)
+        return {ErrorCode::TOO_LARGE, what + "the bound of " + std::to_string(maximumBytes)};
+    // calloc leaves zeroed pages to the system until they are touched.
+    std::shared_ptr<void> data(std::calloc(static_cast<std::size_t>(bytes), 1), std::free);
+    if (!data) return {ErrorCode::TOO_LARGE, what + "there is memory"};
+    _data = std::move(data);
+    _description = description;
+    return {};
+}
+
+Status MemoryVoxelSource::setExternal(const Description& description, void* data,
+                                      std::function<void()> release)
+{
+    if (Status status = description.validate(); !status.ok()) return status;
+    if (!data) return {ErrorCode::VALUE_INVALID, "the pointer to external voxels is null"};
+    _data = std::shared_ptr<void>(data, [release = std::move(release)](void*) {
+        if (release) release();
+    });
+    _description = description;
+    return {};
+}
+
+std::size_t MemoryVoxelSource::sizeInBytes() const
+{
+    return _data ? static_cast<std::size_t>(_description.sizeInBytes()) : 0;
+}
+
+Status MemoryVoxelSource::checkRegion(const core::Box3i& region) const
+{
+    if (!_data) return {ErrorCode::VALUE_INVALID, "the voxel source has no voxels"};
+    for (int axis = 0; axis < 3; ++axis)
+        if (region.min[axis] < 0 || region.max[axis] > _description.size[axis])
+            return {ErrorCode::INDEX_OUT_OF_RANGE,
+                    "samples " + core::formatTriple(region.min) + " to " +
+                        core::formatTriple(region.max) + " are outside the volume of " +
+                        core::formatTriple(_description.size),
+                    axis};
+    return {};
+}
+
+Status MemoryVoxelSource::read(const core::Box3i& region, void* destination) const
+{
+    if (Status status = checkRegion(region); !status.ok()) return status;
+    core::copyRegion({_data.get(), _description.type, _description.components, _description.size},
+                     region, destination);
+    return {};
+}
+
+VoxelBlock MemoryVoxelSource::share(const core::Box3i& region) const
+{
+    if (region.empty() || !checkRegion(region).ok()) return {};
+    // In one piece: a run of slices, of rows of one slice, or of samples of one row.
+    const glm::ivec3 size = region.size();
+    const glm::ivec3& all = _description.size;
+    const bool wholeRows = size.x == all.x, wholeSlices = wholeRows && size.y == all.y;
+    if (!(wholeSlices || (wholeRows && size.z == 1) || (size.y == 1 && size.z == 1))) return {};
+    const std::int64_t first =
+        region.min.x +
+        std::int64_t(all.x) * (region.min.y + std::int64_t(all.y) * std::int64_t(region.min.z));
+    const std::int64_t voxel =
+        static_cast<std::int64_t>(voxelTypeSize(_description.type)) * _description.components;
+    VoxelBlock block;
+    block.owner = _data;
+    block.data = static_cast<const unsigned char*>(_data.get()) + first * voxel;
+    block.bytes = static_cast<std::size_t>(
+        core::voxelBytes(size, _description.type, _description.components));
+    return block;
+}
+
+} // namespace osgVolumizer

@@ -1,0 +1,348 @@
+#include "Voxels.h"
+
+#include "Error.h"
+#include "core/voxels/VoxelData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <new>
+
+namespace osgVolumizer {
+
+struct Voxels::Brick
+{
+    std::mutex mutex; // held while the source reads, so that a brick is read once
+    Block block;
+    core::ValueRange range;
+    bool rangeKnown = false;
+    bool failed = false;
+    unsigned modified = 0; // set before the brick is shared
+};
+
+namespace {
+
+bool finite(const osg::Vec3d& v)
+{
+    return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+std::string text(const osg::Vec3d& v)
+{
+    return std::to_string(v.x()) + "," + std::to_string(v.y()) + "," + std::to_string(v.z());
+}
+
+/// The component that lookup tables, ranges and emptiness refer to.
+int significantComponent(const VoxelSource::Description& d)
+{
+    return d.components == 4 ? 3 : 0;
+}
+
+} // namespace
+
+Voxels::Voxels() = default;
+
+Voxels::Voxels(VoxelSource* source)
+{
+    reportError(setSource(source));
+}
+
+Voxels::Voxels(const Voxels& o, const osg::CopyOp& op)
+    : osg::Object(o, op), _source(o._source), _description(o._description),
+      _brickSize(o._brickSize), _overlap(o._overlap), _layout(o._layout), _fileName(o._fileName),
+      _fileOptions(o._fileOptions)
+{
+    std::lock_guard<std::mutex> lock(o._rangeMutex);
+    _explicitRange = o._explicitRange;
+    _rangeKnown = o._rangeKnown;
+    _range = o._range;
+}
+
+Voxels::~Voxels() = default;
+
+Status Voxels::setSource(VoxelSource* source)
+{
+    osg::ref_ptr<VoxelSource> keep(source);
+    VoxelSource::Description description;
+    core::BrickLayout layout;
+    if (source) {
+        description = source->describe();
+        if (Status status = description.validate(); !status.ok()) return status;
+        Result<core::BrickLayout> made =
+            core::BrickLayout::create(description.size, _brickSize, _overlap);
+        if (!made.ok()) return made.status;
+        layout = *made;
+    }
+    _source = keep;
+    _description = description;
+    _layout = layout;
+    {
+        std::lock_guard<std::mutex> lock(_rangeMutex);
+        double low = 0.0, high = 1.0;
+        voxelTypeRange(description.type, low, high);
+        _range.set(low, high);
+        _explicitRange = false;
+        _rangeKnown =
+            !source || description.components != 1 || voxelTypeSize(description.type) == 1;
+    }
+    forgetBricks();
+    return {};
+}
+
+bool Voxels::valid() const
+{
+    return _source.valid();
+}
+
+Status Voxels::setSpacing(const osg::Vec3d& spacing)
+{
+    if (!finite(spacing) || !(spacing.x() > 0.0 && spacing.y() > 0.0 && spacing.z() > 0.0))
+        return {ErrorCode::VALUE_INVALID,
+                "voxel spacing " + text(spacing) + " is not positive and finite"};
+    _description.spacing = glm::dvec3(spacing.x(), spacing.y(), spacing.z());
+    ++_layoutCount;
+    return {};
+}
+
+osg::Vec3d Voxels::getSpacing() const
+{
+    return {_description.spacing.x, _description.spacing.y, _description.spacing.z};
+}
+
+Status Voxels::setOrigin(const osg::Vec3d& origin)
+{
+    if (!finite(origin))
+        return {ErrorCode::VALUE_INVALID, "volume origin " + text(origin) + " is not finite"};
+    _description.origin = glm::dvec3(origin.x(), origin.y(), origin.z());
+    ++_layoutCount;
+    return {};
+}
+
+osg::Vec3d Voxels::getOrigin() const
+{
+    return {_description.origin.x, _description.origin.y, _description.origin.z};
+}
+
+double Voxels::getMeanSpacing() const
+{
+    return (_description.spacing.x + _description.spacing.y + _description.spacing.z) / 3.0;
+}
+
+Status Voxels::setRange(const osg::Vec2d& range)
+{
+    if (!(range.x() < range.y()) || !std::isfinite(range.y() - range.x()))
+        return {ErrorCode::VALUE_INVALID, "value range " + std::to_string(range.x()) + "," +
+                                              std::to_string(range.y()) +
+                                              " does not rise, or is not finite"};
+    std::lock_guard<std::mutex> lock(_rangeMutex);
+    _range = range;
+    _rangeKnown = _explicitRange = true;
+    ++_layoutCount;
+    return {};
+}
+
+osg::Vec2d Voxels::getRange() const
+{
+    std::lock_guard<std::mutex> lock(_rangeMutex);
+    if (!_rangeKnown) findRange();
+    return _range;
+}
+
+bool Voxels::hasExplicitRange() const
+{
+    std::lock_guard<std::mutex> lock(_rangeMutex);
+    return _explicitRange;
+}
+
+std::optional<std::pair<double, double>> Voxels::knownRange(const core::Box3i& samples) const
+{
+    // A user's source may throw; nothing may pass from here through OSG's callbacks.
+    try {
+        return _source->valueRange(samples);
+    } catch (...) {
+        return std::nullopt;
+    }
+}
+
+void Voxels::findRange() const
+{
+    core::ValueRange found;
+    if (const auto known = knownRange({glm::ivec3(0), _description.size})) {
+        found = {known->first, known->second};
+    } else {
+        for (std::int64_t i = 0; i < _layout.brickCount(); ++i) {
+            const auto range = getBrickRange(i);
+            found.expand({range.first, range.second});
+        }
+    }
+    // A single value still needs two ends, and no value at all any two.
+    if (found.empty()) found = {0.0, 1.0};
+    if (!(found.low < found.high))
+        found.high = found.low + std::max(1.0, std::fabs(found.low) * 1e-6);
+    if (!std::isfinite(found.high - found.low)) found = {0.5 * found.low, 0.5 * found.high};
+    _range.set(found.low, found.high);
+    _rangeKnown = true;
+}
+
+Status Voxels::setBrickSize(const glm::ivec3& samples)
+{
+    return rebuildLayout(samples, _overlap);
+}
+
+Status Voxels::setOverlap(int samples)
+{
+    return rebuildLayout(_brickSize, samples);
+}
+
+Status Voxels::rebuildLayout(const glm::ivec3& brickSize, int overlap)
+{
+    // Without voxels, a volume of one sample stands in, so that the numbers are checked just the
+    // same.
+    const glm::ivec3 size = valid() ? _description.size : glm::ivec3(1);
+    const Result<core::BrickLayout> layout = core::BrickLayout::create(size, brickSize, overlap);
+    if (!layout.ok()) return layout.status;
+    _brickSize = brickSize;
+    _overlap = overlap;
+    if (valid()) _layout = *layout;
+    forgetBricks();
+    return {};
+}
+
+void Voxels::forgetBricks()
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    _bricks.clear();
+    _allModified = ++_lastModified;
+    ++_layoutCount;
+}
+
+void Voxels::dirty(std::int64_t brick)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    if (brick < 0) {
+        _bricks.clear();
+        _allModified = ++_lastModified;
+    } else if (brick < _layout.brickCount()) {
+        // A fresh one: threads that read the old one may finish with it.
+        auto fresh = std::make_shared<Brick>();
+        fresh->modified = ++_lastModified;
+        _bricks[brick] = std::move(fresh);
+    }
+}
+
+unsigned Voxels::getModifiedCount(std::int64_t brick) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    const auto found = _bricks.find(brick);
+    return found == _bricks.end() ? _allModified : found->second->modified;
+}
+
+Voxels::BrickPtr Voxels::findBrick(std::int64_t brick) const
+{
+    if (brick < 0 || brick >= _layout.brickCount()) return {};
+    std::lock_guard<std::mutex> lock(_mutex);
+    BrickPtr& found = _bricks[brick];
+    if (!found) {
+        found = std::make_shared<Brick>();
+        found->modified = _allModified;
+    }
+    return found;
+}
+
+Voxels::Block Voxels::readBrick(const core::Box3i& samples, Status& status) const
+{
+    try { // as in knownRange()
+        const std::int64_t bytes =
+            core::voxelBytes(samples.size(), _description.type, _description.components);
+        const Block shared = _source->share(samples);
+        if (shared && shared.bytes == static_cast<std::size_t>(bytes)) return shared;
+        std::shared_ptr<unsigned char[]> data(new unsigned char[static_cast<std::size_t>(bytes)]);
+        status = _source->read(samples, data.get());
+        if (status.ok()) return {data, data.get(), static_cast<std::size_t>(bytes)};
+    } catch (const std::bad_alloc&) {
+        status = {ErrorCode::TOO_LARGE, "there is no memory for a brick of voxels"};
+    } catch (const std::exception& e) {
+        status = {ErrorCode::FILE_UNREADABLE, std::string("the voxel source threw: ") + e.what()};
+    } catch (...) {
+        status = {ErrorCode::FILE_UNREADABLE, "the voxel source threw"};
+    }
+    return {};
+}
+
+/// Expects brick.mutex to be held.
+const Voxels::Block& Voxels::loadBrick(std::int64_t index, Brick& brick) const
+{
+    if (brick.block || brick.failed) return brick.block;
+    Status status;
+    ++_readCount;
+    brick.block = readBrick(_layout.brick(index).samples, status);
+    brick.failed = !status.ok();
+    if (brick.failed) {
+        status.text = "brick " + std::to_string(index) +
+                      (_fileName.empty() ? "" : " of " + _fileName) + ": " + status.text;
+        if (status.index < 0) status.index = index;
+        reportError(status);
+    }
+    return brick.block;
+}
+
+Voxels::Block Voxels::getBrick(std::int64_t index) const
+{
+    const BrickPtr brick = findBrick(index);
+    if (!brick) return {};
+    std::lock_guard<std::mutex> lock(brick->mutex);
+    return loadBrick(index, *brick);
+}
+
+void Voxels::releaseBrick(std::int64_t index) const
+{
+    const BrickPtr brick = findBrick(index);
+    if (!brick) return;
+    std::lock_guard<std::mutex> lock(brick->mutex);
+    brick->block = Block();
+}
+
+std::pair<double, double> Voxels::getBrickRange(std::int64_t index) const
+{
+    const BrickPtr brick = findBrick(index);
+    if (!brick) return {core::ValueRange().low, core::ValueRange().high};
+    std::lock_guard<std::mutex> lock(brick->mutex);
+    if (!brick->rangeKnown) {
+        const core::Box3i samples = _layout.brick(index).samples;
+        if (const auto known = knownRange(samples)) {
+            brick->range = {known->first, known->second};
+        } else if (const Block& block = loadBrick(index, *brick)) {
+            brick->range = core::scanRange(
+                {block.data, _description.type, _description.components, samples.size()},
+                significantComponent(_description));
+        }
+        brick->rangeKnown = true;
+    }
+    return {brick->range.low, brick->range.high};
+}
+
+osg::ref_ptr<Voxels::RenderData> Voxels::getRenderData() const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    return _renderData;
+}
+
+osg::ref_ptr<Voxels::RenderData>
+Voxels::getOrCreateRenderData(const std::function<osg::ref_ptr<RenderData>()>& make) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    if (!_renderData) _renderData = make();
+    return _renderData;
+}
+
+void Voxels::resizeGLObjectBuffers(unsigned int maximum)
+{
+    if (const osg::ref_ptr<RenderData> data = getRenderData()) data->resizeGLObjectBuffers(maximum);
+}
+
+void Voxels::releaseGLObjects(osg::State* state) const
+{
+    if (const osg::ref_ptr<RenderData> data = getRenderData()) data->releaseGLObjects(state);
+}
+
+} // namespace osgVolumizer

@@ -1,0 +1,144 @@
+#include "WriteVoxels.h"
+
+#include "core/voxels/VoxelData.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <vector>
+
+namespace osgVolumizer {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+OIIO::TypeDesc typeDescOf(VoxelType type)
+{
+    switch (type) {
+    case VoxelType::INT8:
+        return OIIO::TypeDesc::INT8;
+    case VoxelType::UINT8:
+        return OIIO::TypeDesc::UINT8;
+    case VoxelType::INT16:
+        return OIIO::TypeDesc::INT16;
+    case VoxelType::UINT16:
+        return OIIO::TypeDesc::UINT16;
+    case VoxelType::INT32:
+        return OIIO::TypeDesc::INT32;
+    case VoxelType::UINT32:
+        return OIIO::TypeDesc::UINT32;
+    case VoxelType::HALF:
+        return OIIO::TypeDesc::HALF;
+    case VoxelType::FLOAT32:
+        return OIIO::TypeDesc::FLOAT;
+    case VoxelType::FLOAT64:
+        return OIIO::TypeDesc::DOUBLE;
+    }
+    return OIIO::TypeDesc::UNKNOWN;
+}
+
+std::string oneLine(std::string text)
+{
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
+
+/// A file of another name beside the target, which takes its place when it is whole.
+class PartFile
+{
+public:
+    explicit PartFile(const std::string& target)
+        : _target(target),
+          _part(fs::path(target).replace_extension(".part" + fs::path(target).extension().string()))
+    {
+    }
+    ~PartFile()
+    {
+        std::error_code ignored;
+        if (!_kept) fs::remove(_part, ignored);
+    }
+    std::string name() const { return _part.string(); }
+    Status keep()
+    {
+        std::error_code failed;
+        fs::rename(_part, _target, failed);
+        if (failed)
+            return {ErrorCode::FILE_UNREADABLE,
+                    _target.string() + " cannot be written: " + failed.message()};
+        _kept = true;
+        return {};
+    }
+
+private:
+    fs::path _target, _part;
+    bool _kept = false;
+};
+
+OIIO::ImageSpec specOf(const VoxelSource::Description& d)
+{
+    OIIO::ImageSpec spec(d.size.x, d.size.y, d.components, typeDescOf(d.type));
+    spec.attribute("compression", "zip");
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    // Offsets of a plain TIFF have 32 bits. Compression may fail to help, and pages have headers.
+    if (d.sizeInBytes() > (std::int64_t(4) << 30) - (std::int64_t(256) << 20))
+        spec.attribute("tiff:bigtiff", 1);
+    return spec;
+}
+
+Status writeSlices(OIIO::ImageOutput& out, const VoxelSource& source, const std::string& part,
+                   const std::string& name, const Progress& progress)
+{
+    const VoxelSource::Description d = source.describe();
+    const OIIO::ImageSpec spec = specOf(d);
+    std::vector<unsigned char> slice(
+        static_cast<std::size_t>(core::voxelBytes({d.size.x, d.size.y, 1}, d.type, d.components)));
+    for (int z = 0; z < d.size.z; ++z) {
+        Status status = source.read({{0, 0, z}, {d.size.x, d.size.y, z + 1}}, slice.data());
+        if (!status.ok()) return status;
+        const auto mode = z ? OIIO::ImageOutput::AppendSubimage : OIIO::ImageOutput::Create;
+        if (!out.open(part, spec, mode))
+            return {ErrorCode::FILE_UNREADABLE,
+                    name + " cannot be written: " + oneLine(out.geterror())};
+        // A format that lacks a type takes another without a word; only a wider one keeps the
+        // values.
+        const bool widened =
+            d.type == VoxelType::HALF && out.spec().format == OIIO::TypeDesc::FLOAT;
+        if (out.spec().format != spec.format && !widened)
+            return {ErrorCode::NOT_SUPPORTED,
+                    name + ": the format cannot hold voxels of type " + voxelTypeName(d.type)};
+        if (!out.write_image(spec.format, slice.data()))
+            return {ErrorCode::FILE_UNREADABLE,
+                    name + ": slice " + std::to_string(z) +
+                        " cannot be written: " + oneLine(out.geterror())};
+        if (progress) progress(static_cast<double>(z + 1) / d.size.z);
+    }
+    if (!out.close())
+        return {ErrorCode::FILE_UNREADABLE,
+                name + " cannot be written: " + oneLine(out.geterror())};
+    return {};
+}
+
+} // namespace
+
+Status writeVoxels(const VoxelSource& source, const std::string& fileName, const Progress& progress)
+{
+    if (Status status = source.describe().validate(); !status.ok()) return status;
+    try {
+        OIIO::geterror();
+        const auto out = OIIO::ImageOutput::create(fileName);
+        if (!out) return {ErrorCode::NOT_SUPPORTED, fileName + ": " + oneLine(OIIO::geterror())};
+        if (source.describe().size.z > 1 && !out->supports("appendsubimage"))
+            return {ErrorCode::NOT_SUPPORTED,
+                    fileName + ": the format \"" + out->format_name() + "\" cannot hold slices"};
+        PartFile part(fileName);
+        Status status = writeSlices(*out, source, part.name(), fileName, progress);
+        return status.ok() ? part.keep() : status;
+    } catch (const std::exception& e) {
+        return {ErrorCode::FILE_UNREADABLE, fileName + " cannot be written: " + oneLine(e.what())};
+    }
+}
+
+} // namespace osgVolumizer

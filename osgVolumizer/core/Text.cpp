@@ -1,0 +1,86 @@
+#include "Text.h"
+
+#include <charconv>
+
+namespace osgVolumizer {
+namespace core {
+
+namespace {
+
+template <class T>
+bool parseWhole(std::string_view text, T& value)
+{
+    if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+    T parsed{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
+    if (error != std::errc() || end != text.data() + text.size()) return false;
+    value = parsed;
+    return true;
+}
+
+} // namespace
+
+bool parseNumber(std::string_view text, double& value)
+{
+    return parseWhole(text, value);
+}
+
+bool parseInteger(std::string_view text, std::int64_t& value)
+{
+    return parseWhole(text, value);
+}
+
+bool parseNumbers(std::string_view text, double* values, int count)
+{
+    const std::vector<std::string_view> pieces = splitText(text, ',');
+    if (pieces.size() != static_cast<std::size_t>(count)) return false;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        if (!parseNumber(pieces[i], values[i])) return false;
+    return true;
+}
+
+std::vector<std::string_view> splitText(std::string_view text, char separator)
+{
+    std::vector<std::string_view> pieces;
+    for (;;) {
+        const std::size_t end = text.find(separator);
+        pieces.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) return pieces;
+        text.remove_prefix(end + 1);
+    }
+}
+
+std::vector<std::string_view> splitBlanks(std::string_view text)
+{
+    static constexpr std::string_view blanks = " \t\r\n\v\f";
+    std::vector<std::string_view> pieces;
+    for (;;) {
+        const std::size_t start = text.find_first_not_of(blanks);
+        if (start == std::string_view::npos) return pieces;
+        text.remove_prefix(start);
+        const std::size_t end = text.find_first_of(blanks);
+        pieces.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) return pieces;
+        text.remove_prefix(end);
+    }
+}
+
+std::string formatNumber(double value)
+{
+    char buffer[32];
+    const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
+    return std::string(buffer, result.ptr);
+}
+
+std::string formatTriple(const glm::ivec3& v)
+{
+    return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
+}
+
+std::string formatTriple(const glm::dvec3& v)
+{
+    return formatNumber(v.x) + "," + formatNumber(v.y) + "," + formatNumber(v.z);
+}
+
+} // namespace core
+} // namespace osgVolumizer

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "Export.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace osgVolumizer {
+namespace core {
+
+/// The whole of `text` as a number, '.' as decimal point whatever the locale; false (and `value`
+/// untouched) for anything else, as also for a number that overflows. "nan" and "inf" are numbers.
+OSGVOLUMIZER_CORE_EXPORT bool parseNumber(std::string_view text, double& value);
+OSGVOLUMIZER_CORE_EXPORT bool parseInteger(std::string_view text, std::int64_t& value);
+/// Exactly `count` numbers between commas.
+OSGVOLUMIZER_CORE_EXPORT bool parseNumbers(std::string_view text, double* values, int count);
+
+/// The pieces between separators; an empty text has one empty piece.
+OSGVOLUMIZER_CORE_EXPORT std::vector<std::string_view> splitText(std::string_view text,
+                                                                 char separator);
+/// The pieces between blanks (blank, tabulator, line ends), none of them empty.
+OSGVOLUMIZER_CORE_EXPORT std::vector<std::string_view> splitBlanks(std::string_view text);
+/// As few digits as read back to the same number.
+OSGVOLUMIZER_CORE_EXPORT std::string formatNumber(double value);
+/// "x,y,z"
+OSGVOLUMIZER_CORE_EXPORT std::string formatTriple(const glm::ivec3& v);
+OSGVOLUMIZER_CORE_EXPORT std::string formatTriple(const glm::dvec3& v);
+
+} // namespace core
+} // namespace osgVolumizer

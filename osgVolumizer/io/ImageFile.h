@@ -1,0 +1,64 @@
+#pragma once
+
+#include "../VoxelSource.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <memory>
+#include <string>
+
+namespace osgVolumizer {
+namespace io {
+
+/// How the pixels of an image become voxels.
+struct PixelFormat
+{
+    OIIO::TypeDesc read = OIIO::TypeDesc::UINT8; ///< what OpenImageIO is asked for
+    int channels = 1;                            ///< the first so many are read
+    VoxelType type = VoxelType::UINT8;
+    int components = 1;
+
+    /// Whether what is read is what is stored.
+    bool direct() const
+    {
+        return channels == components && read != OIIO::TypeDesc::INT64 &&
+               read != OIIO::TypeDesc::UINT64;
+    }
+    bool operator==(const PixelFormat& o) const { return read == o.read && channels == o.channels; }
+};
+
+/// An image file that is open for reading. OpenImageIO's exceptions end here.
+class ImageFile
+{
+public:
+    /// FILE_UNREADABLE with OpenImageIO's reason.
+    Status open(const std::string& path);
+    /// False where there is no such subimage.
+    bool seek(int subimage);
+
+    const OIIO::ImageSpec& spec() const { return _input->spec(); }
+    const std::string& path() const { return _path; }
+    /// Size of the present subimage.
+    glm::ivec3 size() const;
+    /// "128,128,1 pixels of 1 x uint8", for messages.
+    std::string text() const;
+    /// Of the present subimage; NOT_SUPPORTED for types that are no numbers.
+    Result<PixelFormat> pixelFormat() const;
+    /// Slices that can be read at a time: the depth of a tile.
+    int sliceStep() const;
+    /// Writes slices [z, z + sliceStep()) of the present subimage, as far as there are any.
+    Status readSlices(const PixelFormat& format, int z, void* destination);
+    /// Refuses voxels that the file cannot hold: before anything is allocated.
+    Status checkBytes(std::int64_t voxelBytes) const;
+
+private:
+    bool readPixels(const PixelFormat& format, int z, int end, void* destination);
+    std::string reason() const;
+
+    std::string _path;
+    std::unique_ptr<OIIO::ImageInput> _input;
+    int _subimage = 0;
+};
+
+} // namespace io
+} // namespace osgVolumizer

@@ -1,0 +1,149 @@
+#include "ForeignLeaf.h"
+
+#include <osg/ColorMask>
+#include <osg/Drawable>
+#include <osgUtil/StateGraph>
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+using osg::StateAttribute;
+
+// Whether two projections differ in their clip z alone.
+bool sameRays(const osg::Matrixd& a, const osg::Matrixd& b)
+{
+    for (int row = 0; row < 4; ++row)
+        for (int column : {0, 1, 3})
+            if (a(row, column) != b(row, column)) return false;
+    return true;
+}
+
+// The Depth attribute that OSG would apply for a graph: the last one on the way down that no override stops.
+const osg::Depth* effectiveDepth(const osgUtil::StateGraph* graph)
+{
+    std::vector<const osg::StateSet*> path;
+    for (; graph; graph = graph->_parent)
+        if (graph->getStateSet()) path.push_back(graph->getStateSet());
+    const osg::Depth* depth = nullptr;
+    bool overridden = false;
+    for (auto set = path.rbegin(); set != path.rend(); ++set) {
+        const auto* pair = (*set)->getAttributePair(StateAttribute::DEPTH);
+        if (!pair || (overridden && !(pair->second & StateAttribute::PROTECTED))) continue;
+        depth = static_cast<const osg::Depth*>(pair->first.get());
+        overridden = (pair->second & StateAttribute::OVERRIDE) != 0;
+    }
+    return depth;
+}
+
+// Normalised device z of the plane at a depth.
+double deviceZ(const osg::Matrixd& p, double depth)
+{
+    const double z = -depth * p(2, 2) + p(3, 2), w = -depth * p(2, 3) + p(3, 3);
+    return z / w;
+}
+
+} // namespace
+
+BoxInView boxInView(const osg::BoundingBoxd& box, const osg::Matrixd& modelView,
+                    const osg::Matrixd& projection)
+{
+    BoxInView r;
+    const double infinity = std::numeric_limits<double>::infinity();
+    r.depth = {infinity, -infinity};
+    r.screen = {glm::dvec2(infinity), glm::dvec2(-infinity)};
+    bool behind = false;
+    for (unsigned i = 0; i < 8; ++i) {
+        const osg::Vec3d eye = box.corner(i) * modelView;
+        const osg::Vec4d clip = osg::Vec4d(eye, 1.0) * projection;
+        r.depth.nearDepth = std::min(r.depth.nearDepth, -eye.z());
+        r.depth.farDepth = std::max(r.depth.farDepth, -eye.z());
+        behind = behind || clip.w() <= 0.0;
+        const glm::dvec2 device(clip.x() / clip.w(), clip.y() / clip.w());
+        r.screen.min = glm::min(r.screen.min, device);
+        r.screen.max = glm::max(r.screen.max, device);
+    }
+    if (behind) r.screen = {glm::dvec2(-infinity), glm::dvec2(infinity)};
+    return r;
+}
+
+std::optional<ForeignLeaf> ForeignLeaf::examine(osgUtil::RenderLeaf& leaf,
+                                                const osg::Matrixd& projection)
+{
+    if (!leaf._modelview || !leaf._projection || !leaf.getDrawable()) return std::nullopt;
+    const osg::BoundingBox& bounds = leaf.getDrawable()->getBoundingBox();
+    if (!bounds.valid() || !sameRays(*leaf._projection, projection)) return std::nullopt;
+    ForeignLeaf result(leaf);
+    result._view = boxInView(bounds, *leaf._modelview, *leaf._projection);
+    core::DepthInterval& depth = result._view.depth;
+    // Bounds are rounded to float: what is flat and parallel to the view still has a range.
+    const double slack = 1e-6 * std::max(std::abs(depth.nearDepth), std::abs(depth.farDepth)) +
+                         1e-6 * bounds.radius();
+    depth.nearDepth -= slack;
+    depth.farDepth += slack;
+    if (!std::isfinite(depth.nearDepth) || !std::isfinite(depth.farDepth)) return std::nullopt;
+    return result;
+}
+
+const osg::Depth* ForeignLeaf::depth() const { return effectiveDepth(_leaf->_parent); }
+
+osgUtil::RenderLeaf* ForeignLeaf::copy(osg::StateSet& state) const
+{
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf =
+        new osgUtil::RenderLeaf(const_cast<osg::Drawable*>(_leaf->getDrawable()), _leaf->_projection,
+                                _leaf->_modelview, _leaf->_depth, _leaf->_traversalOrderNumber);
+    _leaf->_parent->find_or_insert(&state)->addLeaf(leaf);
+    return leaf.get();
+}
+
+osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, bool layer,
+                                        osg::Drawable* drawable) const
+{
+    const osg::Matrixd& p = *_leaf->_projection;
+    const double zNear =
+        std::isfinite(interval.nearDepth) ? std::max(-1.0, deviceZ(p, interval.nearDepth)) : -1.0;
+    const double zFar =
+        std::isfinite(interval.farDepth) ? std::min(1.0, deviceZ(p, interval.farDepth)) : 1.0;
+    if (!(zNear < zFar)) return nullptr;
+    osg::ref_ptr<osg::RefMatrix> projection = new osg::RefMatrix(p);
+    const double scale = 2.0 / (zFar - zNear), offset = -(zFar + zNear) / (zFar - zNear);
+    for (int row = 0; row < 4; ++row)
+        (*projection)(row, 2) = scale * p(row, 2) + offset * p(row, 3);
+
+    const osg::Depth* depth = this->depth();
+    // Segments are split at true depths, whatever range the leaf draws to.
+    const bool ownRange = depth && !layer;
+    const double rangeNear = ownRange ? depth->getZNear() : 0.0;
+    const double rangeFar = ownRange ? depth->getZFar() : 1.0;
+    const auto window = [&](double z) {
+        return rangeNear + (rangeFar - rangeNear) * 0.5 * (z + 1.0);
+    };
+    osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+    const unsigned force = StateAttribute::ON | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
+    const osg::Depth::Function function = layer   ? osg::Depth::LESS
+                                          : depth ? depth->getFunction()
+                                                  : osg::Depth::LESS;
+    osg::ref_ptr<osg::Depth> own = new osg::Depth(function, window(zNear), window(zFar),
+                                                  layer || !depth || depth->getWriteMask());
+    if (layer) {
+        set->setAttributeAndModes(own, force);
+        set->setAttribute(new osg::ColorMask(false, false, false, false), force);
+    } else {
+        set->setAttribute(own, force); // whether there is a depth test at all stays as it was
+    }
+    osg::ref_ptr<osgUtil::RenderLeaf> copy =
+        new osgUtil::RenderLeaf(drawable ? drawable : const_cast<osg::Drawable*>(_leaf->getDrawable()),
+                                projection, _leaf->_modelview, _leaf->_depth, _leaf->_traversalOrderNumber);
+    _leaf->_parent->find_or_insert(set)->addLeaf(copy);
+    return copy.get();
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,365 @@
+#include "GroupComposer.h"
+
+#include "../Error.h"
+#include "Matrices.h"
+#include "ScreenAreas.h"
+
+#include <osgUtil/StateGraph>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+// More rectangles would cost more than they save.
+constexpr std::size_t MAXIMUM_REGIONS = 8;
+// When to sort fragments, and what a drawable that is no mesh counts for.
+constexpr std::size_t MAXIMUM_SORTED_TRIANGLES = 20000, UNKNOWN_TRIANGLES = 1000;
+constexpr double INFINITE_DEPTH = std::numeric_limits<double>::infinity();
+
+double middle(const core::DepthInterval& d) { return 0.5 * (d.nearDepth + d.farDepth); }
+
+// Any order that does not depend on the order of nodes.
+bool comesFirst(const VolumeInstance* a, const VolumeInstance* b)
+{
+    if (a->depth.farDepth != b->depth.farDepth) return a->depth.farDepth > b->depth.farDepth;
+    if (a->depth.nearDepth != b->depth.nearDepth) return a->depth.nearDepth > b->depth.nearDepth;
+    const osg::Matrixd &m = *a->frameToEye, &n = *b->frameToEye;
+    return std::lexicographical_compare(m.ptr(), m.ptr() + 16, n.ptr(), n.ptr() + 16);
+}
+
+} // namespace
+
+bool GroupComposer::prepare(VolumeInstance& instance, PreparedVolume& volume)
+{
+    volume.instance = &instance;
+    volume.view = {toGlm(*instance.leaf->_modelview), toGlm(*instance.leaf->_projection)};
+    if (instance.look->features.slab) return true;
+    const bool mergeable = _group.volumes.size() > 1 || !_group.surfaces.empty();
+    volume.sliced.reset(new SlicedVolume);
+    const Status status = volume.sliced->polygonize(instance, volume.view, mergeable);
+    ++_counts.polygonizations;
+    if (!status) reportError(status);
+    return status.ok();
+}
+
+void GroupComposer::prepareVolumes()
+{
+    std::vector<VolumeInstance*> instances = _group.volumes;
+    std::sort(instances.begin(), instances.end(), comesFirst);
+    _step = INFINITE_DEPTH;
+    for (VolumeInstance* instance : instances) {
+        PreparedVolume volume;
+        if (!prepare(*instance, volume)) continue;
+        _step = std::min(_step, volume.sliced ? volume.sliced->spacing() : instance->look->step);
+        _volumes.push_back(std::move(volume));
+    }
+}
+
+// Surfaces that, looked at closely, reach into no volume stay the leaves they are.
+void GroupComposer::prepareSurfaces(std::vector<OrderedLeaf>& leaves)
+{
+    for (const ForeignLeaf* leaf : _group.surfaces) {
+        Surface surface;
+        surface.leaf = leaf;
+        surface.mesh = SurfaceMesh::of(*leaf);
+        surface.view = surface.mesh ? surface.mesh->view() : leaf->view();
+        const bool reaches =
+            std::any_of(_volumes.begin(), _volumes.end(), [&surface](const PreparedVolume& v) {
+                return v.instance->depth.overlaps(surface.view.depth);
+            });
+        if (reaches)
+            _surfaces.push_back(std::move(surface));
+        else
+            leaves.push_back({leaf->leaf()._depth, &leaf->leaf()});
+    }
+}
+
+std::vector<GroupComposer::Region> GroupComposer::findRegions() const
+{
+    std::vector<ScreenArea> areas;
+    for (std::size_t s = 0; s < _surfaces.size(); ++s) {
+        // What is no mesh of triangles may be wider than its bounds: points, lines, text.
+        const int margin = _surfaces[s].mesh ? 2 : 16;
+        areas.push_back({pixelRectangle(_surfaces[s].view.screen, _viewport, margin), {s}});
+    }
+    areas = joinOverlapping(std::move(areas), MAXIMUM_REGIONS);
+    std::vector<Region> regions;
+    std::vector<glm::ivec4> rest = {_viewport};
+    for (const ScreenArea& area : areas) {
+        regions.push_back({{area.rectangle}, area.members});
+        rest = subtract(rest, area.rectangle);
+    }
+    if (!rest.empty()) regions.push_back({rest, {}});
+    return regions;
+}
+
+void GroupComposer::makeLooks(PreparedVolume& volume, const Region& region)
+{
+    auto look = std::make_shared<VolumeLook>(*volume.instance->look);
+    look->scissors = region.rectangles;
+    if (volume.sliced) {
+        look->step = volume.sliced->spacing();
+        look->surfaceNormal = volume.sliced->surfaceNormal();
+        look->features.spherical = volume.sliced->spherical();
+    } else if (!alone()) {
+        look->step = _step; // the same samples in every region, and one for each volume in a thin slab
+    }
+    volume.looks[WHOLE] = look;
+    for (const Part part : {BEHIND_LAYER, IN_FRONT_OF_LAYER}) {
+        auto split = std::make_shared<VolumeLook>(*look);
+        split->features.layerDepth = true;
+        split->inFrontOfLayer = part == IN_FRONT_OF_LAYER;
+        volume.looks[part] = split;
+    }
+}
+
+std::vector<core::ScheduledInterval> GroupComposer::schedule(const Region& region) const
+{
+    std::vector<core::ScheduleMember> members;
+    core::ScheduleLimits limits;
+    for (const PreparedVolume& volume : _volumes) {
+        members.push_back({volume.instance->depth, true, volume.looks[WHOLE]->step});
+        // A slice has no inside that a layer could split.
+        if (volume.sliced) limits.surfaceSteps = 1.0;
+    }
+    for (std::size_t s : region.surfaces)
+        members.push_back({_surfaces[s].view.depth, false, 0.0});
+    return core::depthSchedule(members, limits);
+}
+
+// The part of each surface in each interval. Members of the schedule are the volumes, then the region's surfaces.
+void GroupComposer::splitSurfaces(const Region& region,
+                                  const std::vector<core::ScheduledInterval>& intervals)
+{
+    std::vector<core::DepthInterval> depths;
+    for (const core::ScheduledInterval& interval : intervals) depths.push_back(interval.depth);
+    for (std::size_t i = 0; i < region.surfaces.size(); ++i) {
+        Surface& surface = _surfaces[region.surfaces[i]];
+        const int member = static_cast<int>(_volumes.size() + i);
+        surface.ends = {INFINITE_DEPTH, -INFINITE_DEPTH};
+        for (const core::ScheduledInterval& interval : intervals) {
+            const auto& in = interval.surfaces;
+            if (std::find(in.begin(), in.end(), member) == in.end()) continue;
+            surface.ends.nearDepth = std::min(surface.ends.nearDepth, interval.depth.nearDepth);
+            surface.ends.farDepth = std::max(surface.ends.farDepth, interval.depth.farDepth);
+        }
+        if (surface.mesh) surface.splits = surface.mesh->split(depths);
+    }
+}
+
+void GroupComposer::compose(std::vector<OrderedLeaf>& leaves)
+{
+    prepareVolumes();
+    prepareSurfaces(leaves);
+    if (_volumes.empty()) return;
+    if (_surfaces.empty()) {
+        composeRegion({}, leaves);
+        return;
+    }
+    for (const Region& region : findRegions()) composeRegion(region, leaves);
+}
+
+// Sorting draws every surface twice per layer; worth it until triangles cost more than intervals do.
+bool GroupComposer::isWorthSorting(const Region& region) const
+{
+    if (region.surfaces.empty() || _volumes.size() != 1 || _volumes.front().sliced) return false;
+    std::size_t triangles = 0;
+    for (std::size_t s : region.surfaces)
+        triangles += _surfaces[s].mesh ? _surfaces[s].mesh->triangleCount() : UNKNOWN_TRIANGLES;
+    return triangles <= MAXIMUM_SORTED_TRIANGLES;
+}
+
+void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>& leaves)
+{
+    using Step = LayerLeaf::Step;
+    PreparedVolume& volume = _volumes.front();
+    const double depth = volume.instance->look->referenceDepth;
+    const std::shared_ptr<const VolumeMesh> mesh = meshOf(volume, {volume.instance->depth});
+    _accumulation.requireTarget();
+    for (int k = 0; k < LayerLeaf::LAYER_COUNT; ++k) {
+        addLayerStep(Step::BEGIN_CAPTURE, k, region, depth, leaves);
+        addSurfaces(Step::BEGIN_CAPTURE, k, region, depth, leaves);
+        addLayerStep(Step::END_CAPTURE, k, region, depth, leaves);
+    }
+    addLayerStep(Step::SORT, 0, region, depth, leaves);
+    for (int rank = 0; rank <= LayerLeaf::LAYER_COUNT; ++rank) {
+        auto look = std::make_shared<VolumeLook>(*volume.looks[WHOLE]);
+        look->features.ranked = true;
+        look->rank = rank;
+        addLayerStep(Step::BEGIN_SEGMENT, rank, region, depth, leaves);
+        addVolume(volume, mesh, look, depth, leaves);
+        addLayerStep(Step::END_SEGMENT, rank, region, depth, leaves);
+        const bool rest = rank == LayerLeaf::LAYER_COUNT;
+        const int query = rest ? rank - 1 : rank;
+        const Step begin = rest ? Step::BEGIN_REST : Step::BEGIN_RANK;
+        addLayerStep(begin, query, region, depth, leaves);
+        addSurfaces(begin, rank, region, depth, leaves);
+        addLayerStep(rest ? Step::END_REST : Step::END_RANK, query, region, depth, leaves);
+    }
+}
+
+void GroupComposer::addLayerStep(LayerLeaf::Step step, int index, const Region& region, double depth,
+                                 std::vector<OrderedLeaf>& leaves)
+{
+    const osgUtil::RenderLeaf& beside = *_volumes.front().instance->leaf;
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
+        new LayerLeaf(&_accumulation, step, index, areaOf(region)), beside._projection, beside._modelview);
+    beside._parent->_parent->find_or_insert(LayerLeaf::stateSet(step))->addLeaf(leaf);
+    leaves.push_back({depth, leaf.get()});
+}
+
+void GroupComposer::addSurfaces(LayerLeaf::Step step, int index, const Region& region, double depth,
+                                std::vector<OrderedLeaf>& leaves)
+{
+    for (std::size_t s : region.surfaces) {
+        const ForeignLeaf& surface = *_surfaces[s].leaf;
+        leaves.push_back({depth, surface.copy(*layerSurfaceState(step, index, surface.depth()))});
+        ++_counts.surfacePieces;
+    }
+}
+
+void GroupComposer::composeRegion(const Region& region, std::vector<OrderedLeaf>& leaves)
+{
+    for (PreparedVolume& volume : _volumes) makeLooks(volume, region);
+    if (isWorthSorting(region)) {
+        composeSorted(region, leaves);
+        return;
+    }
+    const std::vector<core::ScheduledInterval> intervals = schedule(region);
+    splitSurfaces(region, intervals);
+    _counts.intervals += static_cast<double>(intervals.size());
+    bool reversed = false;
+    for (std::size_t i = 0; i < intervals.size(); ++i) {
+        const core::ScheduledInterval& interval = intervals[i];
+        std::vector<int> order = interval.volumes;
+        if (reversed) std::reverse(order.begin(), order.end());
+        reversed = !reversed;
+        if (interval.surfaces.empty()) {
+            for (int v : order) {
+                if (_pendingVolume != v) flush(leaves);
+                _pendingVolume = v;
+                _volumes[static_cast<std::size_t>(v)].pending.push_back(interval.depth);
+            }
+            continue;
+        }
+        flush(leaves);
+        composeMixed(region, intervals, i, order, leaves);
+    }
+    flush(leaves);
+}
+
+void GroupComposer::composeMixed(const Region& region,
+                                 const std::vector<core::ScheduledInterval>& intervals,
+                                 std::size_t interval, const std::vector<int>& order,
+                                 std::vector<OrderedLeaf>& leaves)
+{
+    const core::DepthInterval& range = intervals[interval].depth;
+    const double depth = middle(range);
+    std::vector<std::shared_ptr<const VolumeMesh>> meshes;
+    bool split = false;
+    for (int v : order) {
+        PreparedVolume& volume = _volumes[static_cast<std::size_t>(v)];
+        meshes.push_back(meshOf(volume, {range}));
+        split = split || (!volume.sliced && !meshes.back()->batches.empty());
+    }
+    if (split) {
+        addStep(AccumulationLeaf::BEGIN_LAYER, region, depth, leaves);
+        addPieces(region, intervals, interval, true, leaves);
+        addStep(AccumulationLeaf::END_LAYER, region, depth, leaves);
+    }
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        PreparedVolume& volume = _volumes[static_cast<std::size_t>(order[i])];
+        addVolume(volume, meshes[i], volume.looks[volume.sliced ? WHOLE : BEHIND_LAYER], depth,
+                  leaves);
+    }
+    addPieces(region, intervals, interval, false, leaves);
+    for (std::size_t i = order.size(); i-- > 0;) {
+        PreparedVolume& volume = _volumes[static_cast<std::size_t>(order[i])];
+        if (!volume.sliced) addVolume(volume, meshes[i], volume.looks[IN_FRONT_OF_LAYER], depth, leaves);
+    }
+}
+
+void GroupComposer::flush(std::vector<OrderedLeaf>& leaves)
+{
+    if (_pendingVolume < 0) return;
+    PreparedVolume& volume = _volumes[static_cast<std::size_t>(_pendingVolume)];
+    const double depth = middle(volume.pending.front());
+    addVolume(volume, meshOf(volume, volume.pending), volume.looks[WHOLE], depth, leaves);
+    volume.pending.clear();
+    _pendingVolume = -1;
+}
+
+std::shared_ptr<const VolumeMesh>
+GroupComposer::meshOf(const PreparedVolume& volume,
+                      const std::vector<core::DepthInterval>& intervals) const
+{
+    if (!volume.sliced) return slabMesh(*volume.instance, volume.view, intervals);
+    if (alone()) return volume.sliced->mesh(*volume.instance);
+    return volume.sliced->mesh(*volume.instance,
+                               {intervals.back().nearDepth, intervals.front().farDepth});
+}
+
+void GroupComposer::addVolume(PreparedVolume& volume, std::shared_ptr<const VolumeMesh> mesh,
+                              const std::shared_ptr<const VolumeLook>& look, double depth,
+                              std::vector<OrderedLeaf>& leaves)
+{
+    if (mesh->batches.empty()) return;
+    VolumeInstance& instance = *volume.instance;
+    _counts.faces += mesh->faceCount;
+    _counts.polygons += static_cast<double>(mesh->indices.size() / 3);
+    ++_counts.volumeLeaves;
+    osg::ref_ptr<VolumeDrawable> drawable = new VolumeDrawable;
+    drawable->set(std::move(mesh), look);
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf =
+        new osgUtil::RenderLeaf(drawable, instance.leaf->_projection, instance.leaf->_modelview,
+                                static_cast<float>(depth));
+    osgUtil::StateGraph* graph = instance.leaf->_parent;
+    if (look->features.key() != instance.look->features.key())
+        graph = graph->_parent->find_or_insert(volumeStateSet(look->features));
+    graph->addLeaf(leaf);
+    leaves.push_back({depth, leaf.get()});
+}
+
+void GroupComposer::addPieces(const Region& region,
+                              const std::vector<core::ScheduledInterval>& intervals,
+                              std::size_t interval, bool layer, std::vector<OrderedLeaf>& leaves)
+{
+    const core::ScheduledInterval& scheduled = intervals[interval];
+    for (int member : scheduled.surfaces) {
+        const Surface& surface =
+            _surfaces[region.surfaces[static_cast<std::size_t>(member) - _volumes.size()]];
+        osg::ref_ptr<osg::Drawable> part;
+        if (surface.mesh) {
+            if (surface.splits[interval]->empty()) continue;
+            part = surface.mesh->drawable(surface.splits[interval]);
+        }
+        // The outermost pieces reach as far as the leaf's own planes: bounds may be too tight.
+        core::DepthInterval depth = scheduled.depth;
+        if (depth.nearDepth == surface.ends.nearDepth) depth.nearDepth = -INFINITE_DEPTH;
+        if (depth.farDepth == surface.ends.farDepth) depth.farDepth = INFINITE_DEPTH;
+        osgUtil::RenderLeaf* leaf = surface.leaf->piece(depth, layer, part);
+        if (!leaf) continue;
+        leaves.push_back({middle(scheduled.depth), leaf});
+        ++_counts.surfacePieces;
+    }
+}
+
+glm::ivec4 GroupComposer::areaOf(const Region& region) const
+{
+    return region.rectangles.empty() ? _viewport : region.rectangles.front();
+}
+
+void GroupComposer::addStep(AccumulationLeaf::Step step, const Region& region, double depth,
+                            std::vector<OrderedLeaf>& leaves)
+{
+    leaves.push_back({depth, accumulationLeaf(_accumulation, step,
+                                              *_volumes.front().instance->leaf, areaOf(region))});
+}
+
+} // namespace render
+} // namespace osgVolumizer

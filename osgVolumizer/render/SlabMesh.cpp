@@ -1,0 +1,142 @@
+#include "MeshBuilder.h"
+
+#include "../core/geometry/ConvexPolytope.h"
+#include "../core/sampling/ViewHelpers.h"
+
+#include <glm/gtc/matrix_access.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+constexpr int SLAB_STRIDE = 5; // position, nearest and farthest depth
+
+// The depth of a frame point as a plane: distance(p) = depth(p) - offset, eye units.
+core::Plane depthPlane(const glm::dmat4& toEye, double offset)
+{
+    const glm::dvec4 z = glm::row(toEye, 2);
+    return {-glm::dvec3(z), -z.w - offset};
+}
+
+core::Plane flipped(const core::Plane& p) { return {-p.normal, -p.offset}; }
+
+// Tag of the faces that clipping makes; nobody asks which plane made them.
+constexpr int CUT = 6;
+
+class SlabMeshBuilder
+{
+public:
+    SlabMeshBuilder(const VolumeInstance& volume, const core::View& view, const glm::dvec4& eye)
+        : _volume(volume), _view(view), _eye(eye), _mesh(std::make_shared<VolumeMesh>())
+    {
+        _mesh->stride = SLAB_STRIDE;
+        _mesh->slabOffset = 3;
+        const Result<core::NearFar> planes = core::nearFar(view.projection);
+        if (planes) _nearPlane = planes->nearDepth + 1e-5 * std::abs(planes->nearDepth);
+    }
+
+    void append(const core::DepthInterval& interval)
+    {
+        for (const SelectedBrick& brick : _volume.bricks) appendBrick(brick, interval);
+    }
+    std::shared_ptr<const VolumeMesh> take() { return std::move(_mesh); }
+
+private:
+    // Depths of a box, to leave out the bricks and the cuts that an interval does not need.
+    core::DepthInterval depthsOf(const core::Box3d& box) const
+    {
+        core::DepthInterval r{std::numeric_limits<double>::infinity(),
+                        -std::numeric_limits<double>::infinity()};
+        for (int i = 0; i < 8; ++i) {
+            const double d = depthPlane(_view.toEye, 0.0).distance(box.corner(i));
+            r.nearDepth = std::min(r.nearDepth, d);
+            r.farDepth = std::max(r.farDepth, d);
+        }
+        return r;
+    }
+
+    void appendBrick(const SelectedBrick& brick, const core::DepthInterval& interval)
+    {
+        const glm::dvec3& margin = _volume.look->pixelMargin;
+        const core::Box3d box{brick.box.min - margin, brick.box.max + margin};
+        const core::DepthInterval depths = depthsOf(box);
+        if (depths.farDepth <= interval.nearDepth || depths.nearDepth >= interval.farDepth) return;
+        _polytope.setBox(box);
+        for (core::Plane plane : _volume.prepared->obliquePlanes) {
+            plane.offset += glm::dot(glm::abs(plane.normal), margin);
+            _polytope.clip(plane, CUT);
+        }
+        // A little beyond the near plane, so that the cap on it is not cut off by GL.
+        const double nearest = std::max(interval.nearDepth, _nearPlane);
+        if (depths.nearDepth < nearest) _polytope.clip(depthPlane(_view.toEye, nearest), CUT);
+        if (depths.farDepth > interval.farDepth)
+            _polytope.clip(flipped(depthPlane(_view.toEye, interval.farDepth)), CUT);
+        if (_polytope.empty()) return;
+
+        BrickBatch batch;
+        batch.texture = brick.texture.texture;
+        batch.textureBytes = brick.texture.bytes;
+        batch.clipMin = glm::vec3(brick.box.min);
+        batch.clipMax = glm::vec3(brick.box.max);
+        batch.textureScale = brick.textureScale;
+        batch.textureOffset = brick.textureOffset;
+        batch.firstIndex = static_cast<unsigned>(_mesh->indices.size());
+        appendFaces(interval);
+        batch.indexCount = static_cast<unsigned>(_mesh->indices.size()) - batch.firstIndex;
+        if (batch.indexCount > 0) _mesh->batches.push_back(batch);
+    }
+
+    // Whether a face is seen from outside: the eye (w = 0: the direction to it) is in front of it.
+    bool facesEye(std::size_t face) const
+    {
+        const glm::dvec3 v = _polytope.vertices[_polytope.indices[_polytope.faceOffsets[face]]];
+        return glm::dot(_polytope.faceNormal(face), glm::dvec3(_eye) - v * _eye.w) > 0.0;
+    }
+
+    void appendFaces(const core::DepthInterval& interval)
+    {
+        const double reference = _volume.look->referenceDepth;
+        for (std::size_t f = 0; f < _polytope.faceCount(); ++f) {
+            if (!facesEye(f)) continue;
+            const auto first = static_cast<unsigned>(_mesh->vertices.size() / SLAB_STRIDE);
+            const std::uint32_t begin = _polytope.faceOffsets[f], end = _polytope.faceOffsets[f + 1];
+            for (std::uint32_t i = begin; i < end; ++i) {
+                const glm::vec3 p(_polytope.vertices[_polytope.indices[i]]);
+                _mesh->vertices.insert(_mesh->vertices.end(),
+                                       {p.x, p.y, p.z,
+                                        static_cast<float>(interval.nearDepth - reference),
+                                        static_cast<float>(interval.farDepth - reference)});
+            }
+            for (unsigned i = 2; i < end - begin; ++i)
+                _mesh->indices.insert(_mesh->indices.end(), {first, first + i - 1, first + i});
+            ++_mesh->faceCount;
+        }
+    }
+
+    const VolumeInstance& _volume;
+    const core::View& _view;
+    const glm::dvec4 _eye;
+    double _nearPlane = -std::numeric_limits<double>::infinity();
+    core::ConvexPolytope _polytope;
+    std::shared_ptr<VolumeMesh> _mesh;
+};
+
+} // namespace
+
+std::shared_ptr<const VolumeMesh> slabMesh(const VolumeInstance& volume, const core::View& view,
+                                           const std::vector<core::DepthInterval>& farToNear)
+{
+    const Result<glm::dvec4> eye = core::eyePosition(view);
+    if (!eye) return std::make_shared<VolumeMesh>();
+    SlabMeshBuilder builder(volume, view, *eye);
+    for (const core::DepthInterval& interval : farToNear) builder.append(interval);
+    return builder.take();
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "BrickTextures.h"
+#include "PreparedGeometry.h"
+#include "TableTextures.h"
+#include "VolumeDrawable.h"
+
+#include "../VolumeAppearance.h"
+#include "../VolumeGeometry.h"
+#include "../core/ordering/DepthSchedule.h"
+
+#include <osgUtil/RenderLeaf>
+
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+/// A brick that this frame may have to draw.
+struct SelectedBrick
+{
+    std::int64_t index = 0;
+    core::Box3d box; ///< frame; clip box, cut down to the geometry
+    BrickTexture texture;
+    glm::vec3 textureScale{1.0f}, textureOffset{0.0f};
+};
+
+/// One volume in one view of one frame, from cull to sort.
+struct VolumeInstance
+{
+    osg::ref_ptr<const VolumeGeometry> geometry;
+    osg::ref_ptr<const VolumeAppearance> appearance;
+    std::shared_ptr<const PreparedGeometry> prepared;
+    std::shared_ptr<const VolumeLook> look;
+    osg::ref_ptr<osg::RefMatrix> frameToEye; ///< model-view of the leaf
+    osg::ref_ptr<VolumeDrawable> drawable;   ///< of the leaf that stands for the volume until sorting
+    std::vector<SelectedBrick> bricks;
+    core::SamplingParameters sampling;
+
+    // Known once sorting begins:
+    osgUtil::RenderLeaf* leaf = nullptr;
+    core::DepthInterval depth; ///< in front of the near plane
+};
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,80 @@
+// The voxels of one brick: interpolated, or fetched as they are.
+
+#ifdef VOXELS
+uniform sampler3D voxels;
+uniform vec3 textureScale; // voxel coordinate -> texture coordinate
+uniform vec3 textureOffset;
+
+#ifdef RGBA
+#define TEXEL vec4
+#define CHANNELS(t) (t)
+#else
+#define TEXEL float
+#define CHANNELS(t) (t).r
+#endif
+
+#ifdef FETCH
+// Voxel coordinate -> coordinate in the samples of the brick. The offset is a whole number.
+vec3 brickCoordinate(vec3 voxelCoordinate)
+{
+    return voxelCoordinate - round(0.5 - textureOffset * vec3(textureSize(voxels, 0)));
+}
+
+TEXEL texelAt(ivec3 i)
+{
+    return CHANNELS(texelFetch(voxels, clamp(i, ivec3(0), textureSize(voxels, 0) - 1), 0));
+}
+
+// The samples about a point, and the point's place between them.
+void cellAt(vec3 voxelCoordinate, out ivec3 cell, out vec3 place)
+{
+    vec3 p = clamp(brickCoordinate(voxelCoordinate), vec3(0.0), vec3(textureSize(voxels, 0) - 1));
+    vec3 low = floor(p);
+    cell = ivec3(low);
+    place = p - low;
+}
+#endif
+
+#ifdef CUBIC
+// Keys's kernel with a = -1/2: weights of the samples -1, 0, 1 and 2.
+vec4 cubicWeights(float f)
+{
+    return vec4(((2.0 - f) * f - 1.0) * f, (3.0 * f - 5.0) * f * f + 2.0,
+                ((4.0 - 3.0 * f) * f + 1.0) * f, (f - 1.0) * f * f) * 0.5;
+}
+
+TEXEL cubicRow(ivec3 i, vec4 w)
+{
+    return w.x * texelAt(i) + w.y * texelAt(i + ivec3(1, 0, 0)) + w.z * texelAt(i + ivec3(2, 0, 0)) +
+           w.w * texelAt(i + ivec3(3, 0, 0));
+}
+#endif
+
+// The voxels' value at a point, as a texel.
+TEXEL voxelAt(vec3 voxelCoordinate)
+{
+#if defined(NEAREST)
+    return texelAt(ivec3(floor(brickCoordinate(voxelCoordinate) + 0.5)));
+#elif defined(CUBIC)
+    ivec3 cell;
+    vec3 f;
+    cellAt(voxelCoordinate, cell, f);
+    vec4 wx = cubicWeights(f.x), wy = cubicWeights(f.y), wz = cubicWeights(f.z);
+    TEXEL sum = TEXEL(0.0);
+    for (int k = 0; k < 4; ++k)
+        for (int j = 0; j < 4; ++j) sum += wz[k] * wy[j] * cubicRow(cell + ivec3(-1, j - 1, k - 1), wx);
+    return sum;
+#elif defined(EXACT)
+    ivec3 cell;
+    vec3 f;
+    cellAt(voxelCoordinate, cell, f);
+    TEXEL x00 = mix(texelAt(cell), texelAt(cell + ivec3(1, 0, 0)), f.x);
+    TEXEL x10 = mix(texelAt(cell + ivec3(0, 1, 0)), texelAt(cell + ivec3(1, 1, 0)), f.x);
+    TEXEL x01 = mix(texelAt(cell + ivec3(0, 0, 1)), texelAt(cell + ivec3(1, 0, 1)), f.x);
+    TEXEL x11 = mix(texelAt(cell + ivec3(0, 1, 1)), texelAt(cell + ivec3(1, 1, 1)), f.x);
+    return mix(mix(x00, x10, f.y), mix(x01, x11, f.y), f.z);
+#else
+    return CHANNELS(texture(voxels, voxelCoordinate * textureScale + textureOffset));
+#endif
+}
+#endif

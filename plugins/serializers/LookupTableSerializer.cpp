@@ -1,0 +1,85 @@
+#include "Codec.h"
+#include "Report.h"
+
+#include <osgVolumizer/LookupTable.h>
+
+#include <osgDB/ObjectWrapper>
+
+namespace osgVolumizer {
+namespace serializers {
+namespace {
+
+const char* const domainNames[] = {"RANGE_FRACTION", "DATA_VALUES"};
+
+Status readFile(const Record& record, const osgDB::Options* options, LookupTable& table)
+{
+    std::string name;
+    Status status = record.get("FileName", name);
+    if (!status.ok()) return status;
+    table.setFileName(name);
+    const auto read = readLookupTable(name, options);
+    if (!read.ok()) return read.status;
+    return table.setPoints((*read)->getFunction()->points(), (*read)->getDomain());
+}
+
+Status apply(Record& record, const osgDB::Options* options, LookupTable& table)
+{
+    if (record.has("FileName")) return readFile(record, options, table);
+    int domain = 0;
+    Status status = record.getChoice("Domain", domainNames, 2, domain);
+    Field::Doubles values;
+    if (status.ok()) status = record.take("Points", values);
+    if (!status.ok()) return status;
+    if (values.size() % 5 != 0)
+        return Status(ErrorCode::SIZE_MISMATCH, "field Points has " +
+                                                    std::to_string(values.size()) +
+                                                    " values, no multiple of 5");
+    LookupPoints points;
+    for (std::size_t i = 0; i < values.size(); i += 5)
+        points.push_back(
+            {values[i], glm::dvec4(values[i + 1], values[i + 2], values[i + 3], values[i + 4])});
+    return table.setPoints(std::move(points), static_cast<LookupTable::Domain>(domain));
+}
+
+bool checkFunction(const LookupTable&)
+{
+    return true;
+}
+
+bool readFunction(osgDB::InputStream& is, LookupTable& table)
+{
+    Record record;
+    Status status = readRecord(is, record);
+    if (status.ok()) status = apply(record, is.getOptions(), table);
+    reportReadError(is, table, status);
+    return true;
+}
+
+bool writeFunction(osgDB::OutputStream& os, const LookupTable& table)
+{
+    Record record;
+    record.add("Version", Field::Integers{Record::version});
+    if (!table.getFileName().empty())
+        record.add("FileName", table.getFileName());
+    else {
+        Field::Doubles values;
+        for (const core::TransferFunction::Point& p : table.getFunction()->points())
+            values.insert(values.end(), {p.value, p.color.r, p.color.g, p.color.b, p.color.a});
+        record.add("Domain", std::string(domainNames[table.getDomain()]));
+        record.add("Points", std::move(values), 5);
+    }
+    writeRecord(os, record);
+    return true;
+}
+
+} // namespace
+} // namespace serializers
+} // namespace osgVolumizer
+
+using namespace osgVolumizer::serializers;
+
+REGISTER_OBJECT_WRAPPER(osgVolumizer_LookupTable, new osgVolumizer::LookupTable,
+                        osgVolumizer::LookupTable, "osg::Object osgVolumizer::LookupTable")
+{
+    ADD_USER_SERIALIZER(Function);
+}

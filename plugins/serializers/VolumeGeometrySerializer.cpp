@@ -1,0 +1,97 @@
+#include "Codec.h"
+#include "Report.h"
+
+#include <osgVolumizer/VolumeGeometry.h>
+
+#include <osgDB/ObjectWrapper>
+
+namespace osgVolumizer {
+namespace serializers {
+namespace {
+
+const char* const layoutNames[] = {"V3F",         "T3F_V3F",     "C3F_V3F", "C4F_V3F",
+                                   "T3F_C3F_V3F", "T3F_C4F_V3F", "USER"};
+
+Status readFormat(const Record& record, core::VertexFormat& format)
+{
+    int layout = 0;
+    Status status = record.getChoice("Layout", layoutNames, 7, layout);
+    format = core::VertexFormat(static_cast<core::VertexLayout>(layout));
+    if (!status.ok() || format.layout != core::VertexLayout::USER) return status;
+    Field::Integers sizes;
+    status = record.get("Sizes", 3, sizes);
+    if (!status.ok()) return status;
+    const bool voxel = sizes[0] == 0 || sizes[0] == 3;
+    const bool color = sizes[1] == 0 || sizes[1] == 3 || sizes[1] == 4;
+    const bool user = sizes[2] >= 0 && sizes[2] <= core::VertexFormat::MAX_USER_VALUES;
+    for (int i = 0; i < 3; ++i)
+        if (!(i == 0 ? voxel : i == 1 ? color : user))
+            return Status(ErrorCode::VALUE_INVALID,
+                          "field Sizes, value " + std::to_string(i) + " is " +
+                              std::to_string(sizes[std::size_t(i)]),
+                          i);
+    format = core::VertexFormat::user(int(sizes[0]), int(sizes[1]), int(sizes[2]));
+    return Status();
+}
+
+Status apply(Record& record, VolumeGeometry& geometry)
+{
+    core::VertexFormat format;
+    Status status = readFormat(record, format);
+    core::TetraSet set;
+    set.vertices = core::VertexArray(format);
+    if (status.ok()) status = record.take("Vertices", set.vertices.values());
+    if (status.ok()) status = record.take("Tetrahedra", set.indices);
+    if (!status.ok()) return status;
+    const std::size_t values = set.vertices.values().size();
+    if (values % std::size_t(format.stride()) != 0)
+        return Status(ErrorCode::SIZE_MISMATCH, "field Vertices has " + std::to_string(values) +
+                                                    " values, no multiple of the " +
+                                                    std::to_string(format.stride()) +
+                                                    " of a vertex");
+    status = set.validate();
+    return status.ok() ? geometry.setTetraSet(std::move(set)) : status;
+}
+
+bool checkTetraSet(const VolumeGeometry&)
+{
+    return true;
+}
+
+bool readTetraSet(osgDB::InputStream& is, VolumeGeometry& geometry)
+{
+    Record record;
+    Status status = readRecord(is, record);
+    if (status.ok()) status = apply(record, geometry);
+    reportReadError(is, geometry, status);
+    return true;
+}
+
+bool writeTetraSet(osgDB::OutputStream& os, const VolumeGeometry& geometry)
+{
+    const VolumeGeometry::TetraSetPtr set = geometry.getTetraSet();
+    const core::VertexFormat& format = set->vertices.format();
+    Record record;
+    record.add("Version", Field::Integers{Record::version});
+    record.add("Layout", std::string(layoutNames[static_cast<int>(format.layout)]));
+    if (format.layout == core::VertexLayout::USER)
+        record.add("Sizes",
+                   Field::Integers{format.voxelCoordinateSize, format.colorSize, format.userSize});
+    record.add("Vertices", set->vertices.values(), std::size_t(format.stride()));
+    record.add("Tetrahedra", Field::Indices(set->indices), 4);
+    writeRecord(os, record);
+    return true;
+}
+
+} // namespace
+} // namespace serializers
+} // namespace osgVolumizer
+
+using namespace osgVolumizer::serializers;
+
+REGISTER_OBJECT_WRAPPER(osgVolumizer_VolumeGeometry, new osgVolumizer::VolumeGeometry,
+                        osgVolumizer::VolumeGeometry,
+                        "osg::Object osg::Node osg::Drawable osgVolumizer::VolumeGeometry")
+{
+    ADD_USER_SERIALIZER(TetraSet);
+}

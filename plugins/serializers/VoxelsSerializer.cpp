@@ -1,0 +1,132 @@
+#include "Codec.h"
+#include "Objects.h"
+#include "Report.h"
+
+#include <osgVolumizer/ReadVoxels.h>
+#include <osgVolumizer/Voxels.h>
+
+#include <osgDB/ObjectWrapper>
+
+namespace osgVolumizer {
+namespace serializers {
+namespace {
+
+// Voxels with a file name are written by that name; others with their source.
+bool checkSource(const Voxels& voxels)
+{
+    return voxels.getFileName().empty() && voxels.getSource();
+}
+
+bool readSource(osgDB::InputStream& is, Voxels& voxels)
+{
+    const osg::ref_ptr<VoxelSource> source = readObject<VoxelSource>(is);
+    // A source without voxels was damaged, and that is reported already.
+    if (source && source->describe().size.x > 0)
+        reportReadError(is, voxels, voxels.setSource(source.get()));
+    return true;
+}
+
+bool writeSource(osgDB::OutputStream& os, const Voxels& voxels)
+{
+    writeObject(os, voxels.getSource());
+    return true;
+}
+
+osg::Vec3d vector(const Field::Doubles& v)
+{
+    return osg::Vec3d(v[0], v[1], v[2]);
+}
+
+Status readFile(const Record& record, const osgDB::Options* options, Voxels& voxels)
+{
+    std::string name, fileOptions;
+    Status status = record.get("FileName", name);
+    if (status.ok()) status = record.get("FileOptions", fileOptions);
+    if (!status.ok()) return status;
+    voxels.setFileName(name);
+    voxels.setFileOptions(fileOptions);
+    osg::ref_ptr<osgDB::Options> local = options ? options->cloneOptions() : new osgDB::Options;
+    local->setOptionString(fileOptions);
+    const auto read = readVoxels(name, local.get());
+    if (!read.ok()) return read.status;
+    status = voxels.setSource((*read)->getSource());
+    if (status.ok() && (*read)->hasExplicitRange()) status = voxels.setRange((*read)->getRange());
+    return status;
+}
+
+Status apply(const Record& record, const osgDB::Options* options, Voxels& voxels)
+{
+    Status status;
+    if (record.has("FileName")) status = readFile(record, options, voxels);
+    if (!status.ok()) return status;
+    Field::Integers size;
+    Field::Doubles values;
+    int overlap = 1;
+    status = record.get("BrickSize", 3, size);
+    for (int i = 0; i < 3 && status.ok(); ++i)
+        if (size[std::size_t(i)] < 1 || size[std::size_t(i)] > 2147483647)
+            status = Status(ErrorCode::VALUE_INVALID,
+                            "field BrickSize, value " + std::to_string(i) + " is " +
+                                std::to_string(size[std::size_t(i)]),
+                            i);
+    if (status.ok()) status = record.getInteger("Overlap", 0, 1024, overlap);
+    // The bricks that there are may be too small for the new overlap, or the new ones for the old.
+    if (status.ok() && overlap < voxels.getOverlap()) status = voxels.setOverlap(overlap);
+    if (status.ok())
+        status = voxels.setBrickSize(glm::ivec3(int(size[0]), int(size[1]), int(size[2])));
+    if (status.ok()) status = voxels.setOverlap(overlap);
+    if (status.ok()) status = record.get("Spacing", 3, values);
+    if (status.ok()) status = voxels.setSpacing(vector(values));
+    if (status.ok()) status = record.get("Origin", 3, values);
+    if (status.ok()) status = voxels.setOrigin(vector(values));
+    if (!status.ok() || !record.has("Range")) return status;
+    status = record.get("Range", 2, values);
+    return status.ok() ? voxels.setRange(osg::Vec2d(values[0], values[1])) : status;
+}
+
+bool checkBricks(const Voxels&)
+{
+    return true;
+}
+
+bool readBricks(osgDB::InputStream& is, Voxels& voxels)
+{
+    Record record;
+    Status status = readRecord(is, record);
+    if (status.ok()) status = apply(record, is.getOptions(), voxels);
+    reportReadError(is, voxels, status);
+    return true;
+}
+
+bool writeBricks(osgDB::OutputStream& os, const Voxels& voxels)
+{
+    const glm::ivec3 size = voxels.getBrickSize();
+    const osg::Vec3d spacing = voxels.getSpacing(), origin = voxels.getOrigin();
+    Record record;
+    record.add("Version", Field::Integers{Record::version});
+    if (!voxels.getFileName().empty()) {
+        record.add("FileName", voxels.getFileName());
+        record.add("FileOptions", voxels.getFileOptions());
+    }
+    record.add("BrickSize", Field::Integers{size.x, size.y, size.z});
+    record.add("Overlap", Field::Integers{voxels.getOverlap()});
+    record.add("Spacing", Field::Doubles{spacing.x(), spacing.y(), spacing.z()});
+    record.add("Origin", Field::Doubles{origin.x(), origin.y(), origin.z()});
+    if (voxels.hasExplicitRange())
+        record.add("Range", Field::Doubles{voxels.getRange().x(), voxels.getRange().y()});
+    writeRecord(os, record);
+    return true;
+}
+
+} // namespace
+} // namespace serializers
+} // namespace osgVolumizer
+
+using namespace osgVolumizer::serializers;
+
+REGISTER_OBJECT_WRAPPER(osgVolumizer_Voxels, new osgVolumizer::Voxels, osgVolumizer::Voxels,
+                        "osg::Object osgVolumizer::Voxels")
+{
+    ADD_USER_SERIALIZER(Source);
+    ADD_USER_SERIALIZER(Bricks);
+}

@@ -1,0 +1,229 @@
+#include <oracles/ClosedForms.h>
+#include <support/GLTest.h>
+#include <support/PictureFile.h>
+#include <support/Shapes.h>
+
+#include <osgVolumizer/VolumeAppearance.h>
+#include <osgVolumizer/VolumeGeometry.h>
+
+#include <osgDB/WriteFile>
+
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+using namespace osgVolumizer::support;
+
+namespace {
+
+struct Outcome
+{
+    int code = -1;
+    std::string text; ///< of both streams
+};
+
+Outcome runTool(const std::string& arguments)
+{
+    Outcome outcome;
+    const std::string command =
+        std::string(OSGVOLUMIZER_BINARY_DIR "/bin/osgvolumizerrender ") + arguments + " 2>&1";
+    FILE* pipe = popen(command.c_str(), "r");
+    if (!pipe) return outcome;
+    std::array<char, 256> buffer;
+    while (std::fgets(buffer.data(), buffer.size(), pipe))
+        outcome.text += buffer.data();
+    const int status = pclose(pipe);
+    if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
+    return outcome;
+}
+
+class RenderToolGLTest : public GLTest
+{
+protected:
+    void SetUp() override
+    {
+        GLTest::SetUp();
+        folder = std::filesystem::path(testing::TempDir()) /
+                 testing::UnitTest::GetInstance()->current_test_info()->name();
+        std::filesystem::create_directories(folder);
+    }
+    std::string file(const std::string& name) const { return (folder / name).string(); }
+
+    /// The square |x|, |z| <= 1 in the plane y = 0, unlit, in its own colour.
+    std::string writeSquare(const osg::Vec4& color) const
+    {
+        osg::ref_ptr<osg::Geometry> square =
+            makeQuad({osg::Vec3(-1, 0, -1), {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}}, color);
+        square->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+        const std::string name = file("square.osgb");
+        EXPECT_TRUE(osgDB::writeNodeFile(*square, name));
+        return name;
+    }
+
+    std::filesystem::path folder;
+};
+
+std::string readText(const std::string& name)
+{
+    std::ostringstream text;
+    text << std::ifstream(name).rdbuf();
+    return text.str();
+}
+
+// The view of a square from the front, two units high.
+const std::string frontal = " --size 16 8 --eye 0 -5 0 --center 0 0 0 --ortho 2 ";
+
+} // namespace
+
+TEST_F(RenderToolGLTest, WritesFloatsAsTheyAre)
+{
+    const std::string scene = writeSquare(osg::Vec4(0.1f, 0.2f, 1e-5f, 1.0f));
+    const Outcome outcome =
+        runTool(scene + frontal + "--background 2.5 -1 0 0.25 --output " + file("picture.exr"));
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    const auto image = readFloatPicture(file("picture.exr"));
+    ASSERT_TRUE(image.ok()) << image.status.text;
+    ASSERT_EQ(image->width, 16);
+    ASSERT_EQ(image->height, 8);
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 16; ++x) {
+            const bool inside = x >= 6 && x < 10 && y >= 2 && y < 6;
+            EXPECT_EQ(image->at(x, y), inside ? glm::vec4(0.1f, 0.2f, 1e-5f, 1.0f)
+                                              : glm::vec4(2.5f, -1.0f, 0.0f, 0.25f));
+        }
+}
+
+TEST_F(RenderToolGLTest, WritesStraightBytesForPeople)
+{
+    const std::string scene = writeSquare(osg::Vec4(0.4f, 0.2f, 0.0f, 1.0f));
+    const Outcome outcome =
+        runTool(scene + frontal + "--background 0.1 0.2 0 0.2 --output " + file("picture.png"));
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    const auto image = readFloatPicture(file("picture.png"));
+    ASSERT_TRUE(image.ok()) << image.status.text;
+    EXPECT_NEAR(image->at(8, 4).r, 102.0f / 255.0f, 1e-6f);
+    EXPECT_NEAR(image->at(8, 4).g, 51.0f / 255.0f, 1e-6f);
+    EXPECT_EQ(image->at(8, 4).a, 1.0f);
+    // Readers give premultiplied values; the file has (0.5, 1, 0) at alpha 51/255.
+    EXPECT_NEAR(image->at(0, 0).g, 0.2f, 1e-6f);
+    EXPECT_NEAR(image->at(0, 0).a, 0.2f, 1e-6f);
+}
+
+TEST_F(RenderToolGLTest, WritesStatistics)
+{
+    const std::string scene = writeSquare(osg::Vec4(1, 1, 1, 1));
+    const Outcome outcome = runTool(scene + frontal + "--frames 5 --stats " + file("stats.json"));
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    const std::string text = readText(file("stats.json"));
+    EXPECT_TRUE(std::regex_search(text, std::regex("\"frames\": 5,"))) << text;
+    EXPECT_TRUE(std::regex_search(text, std::regex("\"milliseconds\": [0-9.e-]+,"))) << text;
+    EXPECT_TRUE(std::regex_search(
+        text, std::regex("\"millisecondsPerFrame\": \\[([0-9.e-]+, ){4}[0-9.e-]+\\]")))
+        << text;
+    EXPECT_NE(text.find("\"counters\": {"), std::string::npos) << text;
+}
+
+TEST_F(RenderToolGLTest, RendersVolumesAsAsked)
+{
+    // A cube of one colour, 8 units wide, in a scene file.
+    osgVolumizer::VoxelSource::Description d;
+    d.size = glm::ivec3(9);
+    d.origin = glm::dvec3(-4.0);
+    osg::ref_ptr<osgVolumizer::MemoryVoxelSource> source = new osgVolumizer::MemoryVoxelSource;
+    ASSERT_TRUE(source->allocate(d).ok());
+    osg::ref_ptr<osgVolumizer::VolumeAppearance> volume = new osgVolumizer::VolumeAppearance;
+    volume->setVoxels(new osgVolumizer::Voxels(source.get()));
+    const glm::dvec4 color(0.8, 0.4, 0.2, 0.1);
+    ASSERT_TRUE(volume->getLookupTable()
+                    ->setPoints({{0.0, color}}, osgVolumizer::LookupTable::RANGE_FRACTION)
+                    .ok());
+    volume->addChild(osgVolumizer::VolumeGeometry::createBox(*volume->getVoxels()));
+    const std::string scene = file("cube.osgt");
+    ASSERT_TRUE(osgDB::writeNodeFile(*volume, scene));
+
+    const glm::dvec4 expected = osgVolumizer::oracle::constantSegment(color, 8.0);
+    const auto faces = [&](const std::string& options) {
+        const Outcome outcome =
+            runTool(scene + " --size 16 16 --eye 0 -20 0 --ortho 5 " + options + " --output " +
+                    file("cube.exr") + " --stats " + file("cube.json"));
+        EXPECT_EQ(outcome.code, 0) << outcome.text;
+        const auto image = readFloatPicture(file("cube.exr"));
+        EXPECT_TRUE(image.ok()) << image.status.text;
+        if (!image.ok()) return -1.0;
+        for (int c = 0; c < 4; ++c)
+            EXPECT_NEAR(image->at(8, 8)[c], expected[c], 2e-3) << options;
+        EXPECT_EQ(image->at(0, 0), glm::vec4(0.0f)) << options;
+        const std::string text = readText(file("cube.json"));
+        std::smatch match;
+        const std::regex counter("\"counters\": \\{[^}]*\"faces\": ([0-9]+)");
+        EXPECT_TRUE(std::regex_search(text, match, counter)) << text;
+        return match.empty() ? -1.0 : std::stod(match[1]);
+    };
+    const double coarse = faces("--technique slices --period 0.5");
+    const double fine = faces("--technique slices --period 0.25");
+    EXPECT_GT(coarse, 10.0);
+    EXPECT_NEAR(fine, 2.0 * coarse, 3.0);
+    EXPECT_LT(faces("--technique slabs"), coarse);
+    EXPECT_GT(faces("--technique auto"), 0.0);
+}
+
+TEST_F(RenderToolGLTest, FramesTheSceneByItself)
+{
+    const std::string scene = writeSquare(osg::Vec4(1, 1, 1, 1));
+    for (const std::string view : {"", "--ortho 1.5", "--fovy 70"}) {
+        const Outcome outcome =
+            runTool(scene + " --size 64 64 " + view + " --output " + file("picture.exr"));
+        EXPECT_EQ(outcome.code, 0) << outcome.text;
+        const auto image = readFloatPicture(file("picture.exr"));
+        ASSERT_TRUE(image.ok()) << image.status.text;
+        const Mask covered = coveredPixels(*image);
+        EXPECT_GT(covered.count(), 600u) << view;
+        for (int x = 0; x < 64; ++x)
+            EXPECT_FALSE(covered.set[x] || covered.set[63 * 64 + x]);
+    }
+}
+
+TEST_F(RenderToolGLTest, RefusesInOneSentence)
+{
+    const std::string scene = writeSquare(osg::Vec4(1, 1, 1, 1));
+    const std::string output = " --output " + file("picture.exr");
+    const struct
+    {
+        std::string arguments;
+        int code;
+        std::string mentions;
+    } cases[] = {
+        {file("missing.osgt") + output, 1, "missing.osgt"},
+        {scene + " --output /nowhere/at/all.exr", 1, "/nowhere/at/all.exr"},
+        {scene + " --output " + file("picture.unknown"), 1, "picture.unknown"},
+        {scene + " --stats /nowhere/stats.json", 1, "/nowhere/stats.json"},
+        {scene + " --eye 0 0 5 --center 0 0 0" + output, 1, "up"},
+        {scene, 2, "--output"},
+        {output, 2, "scene"},
+        {scene + " --frobnicate" + output, 2, "--frobnicate"},
+        {scene + " --size 0 10" + output, 2, "--size"},
+        {scene + " --size 10" + output, 2, "--size"},
+        {scene + " --size 1e9 1e9" + output, 2, "--size"},
+        {scene + " --eye 1 2" + output, 2, "--eye"},
+        {scene + " --eye nan 0 0" + output, 2, "nan"},
+        {scene + " --up 0 0 1" + output, 2, "--up"},
+        {scene + " --period 0" + output, 2, "--period"},
+        {scene + " --technique magic" + output, 2, "magic"},
+        {scene + " --frames 1.5" + output, 2, "--frames"},
+        {scene + " --fovy 30 --ortho 1" + output, 2, "--ortho"},
+        {scene + " " + scene + output, 2, "Two scenes"},
+        {scene + " --output", 2, "--output"},
+    };
+    for (const auto& c : cases) {
+        const Outcome outcome = runTool(c.arguments);
+        EXPECT_EQ(outcome.code, c.code) << c.arguments << "\n" << outcome.text;
+        EXPECT_NE(outcome.text.find(c.mentions), std::string::npos) << outcome.text;
+        EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
+    }
+    EXPECT_EQ(runTool("--help").code, 0);
+}

@@ -1,0 +1,296 @@
+#include "SerializerFixture.h"
+
+#include <osgVolumizer/LookupTable.h>
+
+#include <osg/MatrixTransform>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+using namespace osgVolumizer;
+
+namespace {
+
+// Numbers that need all their digits, and the ends of the range.
+std::vector<double> awkwardNumbers()
+{
+    std::vector<double> values{0.1,
+                               -1.0 / 3.0,
+                               6.4e6 + 1e-9,
+                               std::nextafter(1.0, 2.0),
+                               std::numeric_limits<double>::max(),
+                               std::numeric_limits<double>::min(),
+                               std::numeric_limits<double>::denorm_min(),
+                               -0.0,
+                               123456789012345678.0,
+                               1e22};
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> mantissa(-1.0, 1.0);
+    std::uniform_int_distribution<int> exponent(-300, 300);
+    while (values.size() < 60)
+        values.push_back(std::ldexp(mantissa(random), exponent(random)));
+    return values;
+}
+
+bool sameBits(const std::vector<double>& a, const std::vector<double>& b)
+{
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+osg::ref_ptr<Voxels> makeVoxels(VoxelType type, int components, const glm::ivec3& size)
+{
+    VoxelSource::Description d;
+    d.size = size;
+    d.type = type;
+    d.components = components;
+    d.spacing = glm::dvec3(0.1, 1.0 / 3.0, 2.0);
+    d.origin = glm::dvec3(-0.7, 6.4e6 + 0.1, 1e-9);
+    osg::ref_ptr<MemoryVoxelSource> source = new MemoryVoxelSource;
+    EXPECT_TRUE(source->allocate(d).ok());
+    auto* bytes = static_cast<unsigned char*>(source->data());
+    std::mt19937 random(5);
+    for (std::size_t i = 0; i < source->sizeInBytes(); ++i)
+        bytes[i] = static_cast<unsigned char>(random());
+    osg::ref_ptr<Voxels> voxels = new Voxels;
+    EXPECT_TRUE(voxels->setSource(source.get()).ok());
+    return voxels;
+}
+
+bool sameVoxels(const Voxels& a, const Voxels& b)
+{
+    const auto* x = dynamic_cast<const MemoryVoxelSource*>(a.getSource());
+    const auto* y = dynamic_cast<const MemoryVoxelSource*>(b.getSource());
+    return x && y && x->sizeInBytes() == y->sizeInBytes() &&
+           std::memcmp(x->data(), y->data(), x->sizeInBytes()) == 0;
+}
+
+} // namespace
+
+TEST_P(SerializerTest, TetraSetsKeepEveryBitInEveryLayout)
+{
+    using core::VertexFormat;
+    using core::VertexLayout;
+    std::vector<VertexFormat> formats;
+    for (int layout = 0; layout < 6; ++layout)
+        formats.emplace_back(static_cast<VertexLayout>(layout));
+    formats.push_back(VertexFormat::user(3, 4, 2));
+    formats.push_back(VertexFormat::user(0, 3, 16));
+    const std::vector<double> numbers = awkwardNumbers();
+    for (const VertexFormat& format : formats) {
+        core::TetraSet set;
+        set.vertices = core::VertexArray(format);
+        set.vertices.resize(6);
+        for (std::size_t i = 0; i < set.vertices.values().size(); ++i)
+            set.vertices.values()[i] = numbers[i % numbers.size()];
+        set.indices = {0, 1, 2, 3, 5, 4, 3, 2, 0, 0, 0, 0};
+        osg::ref_ptr<VolumeGeometry> geometry = new VolumeGeometry;
+        geometry->setName("a \"name\" \\ with blanks");
+        geometry->setNodeMask(0xf0f);
+        ASSERT_TRUE(geometry->setTetraSet(set).ok());
+        const auto copy = roundTrip(*geometry);
+        ASSERT_TRUE(copy);
+        EXPECT_EQ(copy->getTetraSet()->vertices.format().layout, format.layout);
+        EXPECT_TRUE(copy->getTetraSet()->vertices.format() == format);
+        EXPECT_TRUE(sameBits(copy->getTetraSet()->vertices.values(), set.vertices.values()));
+        EXPECT_EQ(copy->getTetraSet()->indices, set.indices);
+        EXPECT_EQ(copy->getName(), geometry->getName());
+        EXPECT_EQ(copy->getNodeMask(), geometry->getNodeMask());
+    }
+    EXPECT_TRUE(errors().empty()) << errors();
+}
+
+TEST_P(SerializerTest, EmptyObjectsComeBackEmpty)
+{
+    const auto geometry = roundTrip(*osg::ref_ptr<VolumeGeometry>(new VolumeGeometry));
+    ASSERT_TRUE(geometry);
+    EXPECT_TRUE(geometry->getTetraSet()->empty());
+    const auto appearance = roundTrip(*osg::ref_ptr<VolumeAppearance>(new VolumeAppearance));
+    ASSERT_TRUE(appearance);
+    EXPECT_FALSE(appearance->getVoxels());
+    osg::ref_ptr<VolumeAppearance> without = new VolumeAppearance;
+    without->setVoxels(new Voxels);
+    const auto copy = roundTrip(*without);
+    ASSERT_TRUE(copy && copy->getVoxels());
+    EXPECT_FALSE(copy->getVoxels()->valid());
+    EXPECT_TRUE(errors().empty()) << errors();
+}
+
+TEST_P(SerializerTest, AppearancesKeepTheirSampling)
+{
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    for (const auto technique :
+         {VolumeAppearance::AUTOMATIC, VolumeAppearance::SLICES, VolumeAppearance::SLABS})
+        for (int i = 0; i < 3; ++i) {
+            a->setTechnique(technique);
+            a->setInterpolation(i ? VolumeAppearance::LINEAR : VolumeAppearance::NEAREST);
+            a->setSamplingMode(static_cast<SamplingMode>(i));
+            a->setSamplingSpace(static_cast<SamplingSpace>(2 - i));
+            ASSERT_TRUE(a->setSamplingPeriod(osg::Vec3d(0.1, 1.0 / 3.0, 7.0 + i)).ok());
+            ASSERT_TRUE(a->setMaximumSamples(1000 + i).ok());
+            ASSERT_TRUE(a->setOpacityUnit(0.1 * i).ok());
+            const auto b = roundTrip(*a);
+            ASSERT_TRUE(b);
+            EXPECT_EQ(b->getTechnique(), a->getTechnique());
+            EXPECT_EQ(b->getInterpolation(), a->getInterpolation());
+            EXPECT_EQ(b->getSamplingMode(), a->getSamplingMode());
+            EXPECT_EQ(b->getSamplingSpace(), a->getSamplingSpace());
+            EXPECT_EQ(b->getSamplingPeriod(), a->getSamplingPeriod());
+            EXPECT_EQ(b->getMaximumSamples(), a->getMaximumSamples());
+            EXPECT_EQ(b->getOpacityUnit(), a->getOpacityUnit());
+        }
+    EXPECT_TRUE(errors().empty()) << errors();
+}
+
+TEST_P(SerializerTest, InlineVoxelsKeepEveryByteOfEveryType)
+{
+    for (int type = 0; type <= static_cast<int>(VoxelType::FLOAT64); ++type)
+        for (const int components : {1, 4}) {
+            osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+            a->setVoxels(makeVoxels(static_cast<VoxelType>(type), components, {5, 3, 7}));
+            ASSERT_TRUE(a->getVoxels()->setBrickSize({4, 3, 2}).ok());
+            ASSERT_TRUE(a->getVoxels()->setRange(osg::Vec2d(-0.1, 1.0 / 3.0)).ok());
+            const auto b = roundTrip(*a);
+            ASSERT_TRUE(b && b->getVoxels());
+            const Voxels &x = *a->getVoxels(), &y = *b->getVoxels();
+            EXPECT_EQ(y.getSize(), x.getSize());
+            EXPECT_EQ(y.getType(), x.getType());
+            EXPECT_EQ(y.getComponents(), x.getComponents());
+            EXPECT_EQ(y.getSpacing(), x.getSpacing());
+            EXPECT_EQ(y.getOrigin(), x.getOrigin());
+            EXPECT_EQ(y.getRange(), x.getRange());
+            EXPECT_TRUE(y.hasExplicitRange());
+            EXPECT_EQ(y.getBrickSize(), x.getBrickSize());
+            EXPECT_EQ(y.getOverlap(), x.getOverlap());
+            EXPECT_TRUE(sameVoxels(x, y)) << voxelTypeName(x.getType());
+        }
+    EXPECT_TRUE(errors().empty()) << errors();
+}
+
+TEST_P(SerializerTest, MoreThanOneChunkOfVoxels)
+{
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    a->setVoxels(makeVoxels(VoxelType::UINT16, 1, {101, 97, 131})); // 2.5 MB
+    ASSERT_TRUE(a->getVoxels()->setOverlap(3).ok());
+    const auto b = roundTrip(*a);
+    ASSERT_TRUE(b && b->getVoxels());
+    EXPECT_TRUE(sameVoxels(*a->getVoxels(), *b->getVoxels()));
+    EXPECT_EQ(b->getVoxels()->getOverlap(), 3);
+    EXPECT_FALSE(b->getVoxels()->hasExplicitRange());
+}
+
+TEST_P(SerializerTest, SharedVoxelsStayShared)
+{
+    osg::ref_ptr<osg::Group> group = new osg::Group;
+    const auto voxels = makeVoxels(VoxelType::UINT8, 1, {4, 4, 4});
+    for (int i = 0; i < 2; ++i) {
+        osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+        a->setVoxels(voxels);
+        a->addChild(VolumeGeometry::createBox(*voxels));
+        osg::ref_ptr<osg::MatrixTransform> turn = new osg::MatrixTransform;
+        turn->addChild(a);
+        group->addChild(turn);
+    }
+    const auto copy = roundTrip(*group);
+    ASSERT_TRUE(copy);
+    ASSERT_EQ(copy->getNumChildren(), 2u);
+    const VolumeAppearance* a[2];
+    for (unsigned i = 0; i < 2; ++i) {
+        a[i] = dynamic_cast<const VolumeAppearance*>(copy->getChild(i)->asGroup()->getChild(0));
+        ASSERT_TRUE(a[i] && a[i]->getNumChildren() == 1);
+        EXPECT_TRUE(dynamic_cast<const VolumeGeometry*>(a[i]->getChild(0)));
+    }
+    EXPECT_EQ(a[0]->getVoxels(), a[1]->getVoxels());
+    EXPECT_NE(a[0]->getLookupTable(), a[1]->getLookupTable());
+}
+
+TEST_P(SerializerTest, LookupTablesKeepEveryBit)
+{
+    LookupPoints points;
+    double value = -1000.0;
+    for (int i = 0; i < 40; ++i) {
+        const double c = std::fmod(0.1 * i + 1.0 / 3.0, 1.0);
+        points.push_back({value, glm::dvec4(c, 1.0 - c, c * c, std::sqrt(c))});
+        if (i % 3) value += 0.1; // jumps between
+    }
+    for (const auto domain : {LookupTable::RANGE_FRACTION, LookupTable::DATA_VALUES}) {
+        osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+        ASSERT_TRUE(a->getLookupTable()->setPoints(points, domain).ok());
+        const auto b = roundTrip(*a);
+        ASSERT_TRUE(b);
+        EXPECT_EQ(b->getLookupTable()->getDomain(), domain);
+        const LookupPoints& copy = b->getLookupTable()->getFunction()->points();
+        ASSERT_EQ(copy.size(), points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            EXPECT_EQ(copy[i].value, points[i].value);
+            EXPECT_EQ(copy[i].color, points[i].color);
+        }
+    }
+    EXPECT_TRUE(errors().empty()) << errors();
+}
+
+TEST_P(SerializerTest, LookupTablesByFileAreFoundBesideTheScene)
+{
+    writeFile("a table--1.lut", "0 0 0 0 0\n100 1 0.5 0.25 0.75\n");
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    a->getLookupTable()->setFileName("a table--1.lut");
+    const auto b = roundTrip(*a);
+    ASSERT_TRUE(b);
+    EXPECT_EQ(b->getLookupTable()->getFileName(), "a table--1.lut");
+    EXPECT_EQ(b->getLookupTable()->getDomain(), LookupTable::DATA_VALUES);
+    EXPECT_EQ(b->getLookupTable()->getFunction()->evaluate(100.0),
+              glm::dvec4(1.0, 0.5, 0.25, 0.75));
+    EXPECT_TRUE(errors().empty()) << errors();
+
+    a->getLookupTable()->setFileName("missing.lut");
+    const auto c = roundTrip(*a);
+    ASSERT_TRUE(c);
+    EXPECT_NE(errors().find("missing.lut"), std::string::npos) << errors();
+    EXPECT_EQ(c->getLookupTable()->getFileName(), "missing.lut");
+}
+
+TEST_P(SerializerTest, VoxelsByFileAreFoundBesideTheScene)
+{
+    std::string samples;
+    for (int i = 0; i < 2 * 3 * 4; ++i)
+        samples += static_cast<char>(10 * i);
+    writeFile("a scan.raw", samples);
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    a->setVoxels(new Voxels);
+    a->getVoxels()->setFileName("a scan.raw.2,3,4,uint8");
+    a->getVoxels()->setFileOptions("spacing=1,2,0.5 range=5,200");
+    ASSERT_TRUE(a->getVoxels()->setSpacing(osg::Vec3d(1.0, 2.0, 0.5)).ok());
+    const auto b = roundTrip(*a);
+    ASSERT_TRUE(b && b->getVoxels());
+    EXPECT_TRUE(errors().empty()) << errors();
+    EXPECT_EQ(b->getVoxels()->getSize(), glm::ivec3(2, 3, 4));
+    EXPECT_EQ(b->getVoxels()->getFileName(), "a scan.raw.2,3,4,uint8");
+    EXPECT_EQ(b->getVoxels()->getFileOptions(), "spacing=1,2,0.5 range=5,200");
+    EXPECT_EQ(b->getVoxels()->getSpacing(), osg::Vec3d(1.0, 2.0, 0.5));
+    EXPECT_EQ(b->getVoxels()->getRange(), osg::Vec2d(5.0, 200.0));
+    const auto block = b->getVoxels()->getBrick(0);
+    ASSERT_TRUE(block);
+    EXPECT_EQ(std::memcmp(block.data, samples.data(), samples.size()), 0);
+
+    a->getVoxels()->setFileName("missing.raw.2,3,4,uint8");
+    const auto c = roundTrip(*a);
+    ASSERT_TRUE(c && c->getVoxels());
+    EXPECT_FALSE(c->getVoxels()->valid());
+    EXPECT_EQ(c->getVoxels()->getFileName(), "missing.raw.2,3,4,uint8");
+    EXPECT_NE(errors().find("missing.raw"), std::string::npos) << errors();
+}
+
+TEST_P(SerializerTest, WritingTwiceGivesTheSameFile)
+{
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    a->setVoxels(makeVoxels(VoxelType::FLOAT32, 1, {6, 5, 4}));
+    a->addChild(VolumeGeometry::createBox(*a->getVoxels()));
+    const std::string first = write(*a);
+    const auto copy = roundTrip(*a);
+    ASSERT_TRUE(copy);
+    EXPECT_EQ(write(*copy), first);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, SerializerTest, testing::Values("osgt", "osgb", "osgx"),
+                         [](const auto& p) { return std::string(p.param); });

@@ -1,0 +1,158 @@
+// The .volume pseudo-loader through osgDB, as osgviewer uses it.
+#include <osgVolumizer/Error.h>
+#include <osgVolumizer/VolumeAppearance.h>
+#include <osgVolumizer/VolumeGeometry.h>
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+using namespace osgVolumizer;
+namespace fs = std::filesystem;
+
+namespace {
+
+class VolumeLoader : public testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        osgDB::Registry::instance()->getLibraryFilePathList().push_front(OSGVOLUMIZER_BINARY_DIR
+                                                                         "/lib");
+        const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+        _folder = fs::path(testing::TempDir()) / ("osgVolumizerLoader" + name);
+        fs::remove_all(_folder);
+        fs::create_directories(_folder);
+        clearLastError();
+    }
+    void TearDown() override { fs::remove_all(_folder); }
+    std::string path(const std::string& name) const { return (_folder / name).string(); }
+    std::string writeBytes(const std::string& name, const std::string& bytes) const
+    {
+        std::ofstream(path(name), std::ios::binary) << bytes;
+        return path(name);
+    }
+    void writeSlice(const std::string& name) const
+    {
+        auto out = OIIO::ImageOutput::create(path(name));
+        const OIIO::ImageSpec spec(4, 3, 1, OIIO::TypeDesc::UINT8);
+        const std::vector<std::uint8_t> pixels(12, 9);
+        ASSERT_TRUE(out && out->open(path(name), spec));
+        ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, pixels.data()));
+    }
+
+    static osgDB::ReaderWriter::ReadResult read(const std::string& name,
+                                                const std::string& options = {})
+    {
+        osg::ref_ptr<osgDB::Options> o = new osgDB::Options(options);
+        o->setObjectCacheHint(osgDB::Options::CACHE_NONE);
+        return osgDB::Registry::instance()->readNode(name, o.get());
+    }
+    static osg::ref_ptr<VolumeAppearance> load(const std::string& name,
+                                               const std::string& options = {})
+    {
+        auto result = read(name, options);
+        EXPECT_TRUE(result.validNode()) << name << ": " << result.statusMessage();
+        return dynamic_cast<VolumeAppearance*>(result.getNode());
+    }
+
+private:
+    fs::path _folder;
+};
+
+} // namespace
+
+TEST_F(VolumeLoader, AnImageFile)
+{
+    const auto head =
+        load(OSGVOLUMIZER_SOURCE_DIR "/data/head.tif.volume",
+             "spacing=1,1,1.5 origin=-64,-64,-63 table=head.lut unit=1.2 range=0,200");
+    ASSERT_TRUE(head.valid());
+    EXPECT_EQ(glm::ivec3(128, 128, 84), head->getVoxels()->getSize());
+    EXPECT_EQ(osg::Vec2d(0, 200), head->getVoxels()->getRange());
+    EXPECT_EQ(1.2, head->getOpacityUnit());
+    EXPECT_EQ("head.tif", head->getName());
+    // The table lies beside the volume.
+    EXPECT_EQ(LookupTable::DATA_VALUES, head->getLookupTable()->getDomain());
+    EXPECT_EQ(13u, head->getLookupTable()->getFunction()->points().size());
+    ASSERT_EQ(1u, head->getNumChildren());
+    ASSERT_TRUE(dynamic_cast<VolumeGeometry*>(head->getChild(0)));
+    const osg::BoundingBox box = dynamic_cast<VolumeGeometry*>(head->getChild(0))->getBoundingBox();
+    EXPECT_EQ(osg::Vec3(-64, -64, -63), osg::Vec3(box._min));
+    EXPECT_EQ(osg::Vec3(63, 63, 61.5), osg::Vec3(box._max));
+}
+
+TEST_F(VolumeLoader, AFolderAndAPattern)
+{
+    fs::create_directories(path("stack"));
+    for (const char* name : {"stack/s008.png", "stack/s009.png", "stack/s010.png"})
+        writeSlice(name);
+    for (const char* name : {"stack", "stack/", "stack/s%03d.png", "stack/s###.png"}) {
+        const auto volume = load(path(name) + ".volume");
+        ASSERT_TRUE(volume.valid()) << name;
+        EXPECT_EQ(glm::ivec3(4, 3, 3), volume->getVoxels()->getSize());
+    }
+}
+
+TEST_F(VolumeLoader, ARawFile)
+{
+    const std::string file = writeBytes("engine.raw", "HEAD" + std::string(2 * 5 * 4 * 3, 'x'));
+    const auto volume = load(file + ".5,4,3,int16,4,big.volume");
+    ASSERT_TRUE(volume.valid());
+    EXPECT_EQ(glm::ivec3(5, 4, 3), volume->getVoxels()->getSize());
+    EXPECT_EQ(VoxelType::INT16, volume->getVoxels()->getType());
+    // Every type.
+    for (int t = 0; t <= static_cast<int>(VoxelType::FLOAT64); ++t) {
+        const auto type = static_cast<VoxelType>(t);
+        writeBytes("any.raw", std::string(27 * voxelTypeSize(type), '\0'));
+        EXPECT_TRUE(load(path("any.raw.3,3,3,") + voxelTypeName(type) + ".volume").valid());
+    }
+}
+
+TEST_F(VolumeLoader, ErrorsCarryTheirMessage)
+{
+    const std::string file = writeBytes("v.raw", std::string(60, 'x'));
+    const std::pair<std::string, std::string> cases[] = {
+        {path("none.tif.volume"), "none.tif"},
+        {file + ".4,4,4,uint8.volume", "60 bytes"},
+        {file + ".16384,8192,8192,uint8.volume", "more than the bound"},
+        {file + ".4,4,4,uint7.volume", "\"uint7\""},
+        {file + ".volume", "cannot be opened as an image"},
+    };
+    for (const auto& [name, message] : cases) {
+        auto result = read(name);
+        EXPECT_FALSE(result.validNode());
+        EXPECT_EQ(osgDB::ReaderWriter::ReadResult::ERROR_IN_READING_FILE, result.status()) << name;
+        EXPECT_NE(std::string::npos, result.message().find(message)) << result.message();
+        EXPECT_EQ(result.message(), getLastError().text);
+    }
+}
+
+TEST_F(VolumeLoader, BadOptionsAreNamed)
+{
+    const std::string name = writeBytes("v.raw", std::string(64, 'x')) + ".4,4,4,uint8.volume";
+    for (const char* option : {"spacing=1,2", "unit=-1", "colour=red", "range=2,1"}) {
+        auto result = read(name, option);
+        EXPECT_EQ(osgDB::ReaderWriter::ReadResult::ERROR_IN_READING_FILE, result.status());
+        const std::string text(option), value = text.substr(text.find('=') + 1);
+        EXPECT_NE(std::string::npos, result.message().find(text.substr(0, text.find('='))));
+        EXPECT_NE(std::string::npos, result.message().find(value));
+    }
+    auto table = read(name, "table=nowhere.lut");
+    EXPECT_NE(std::string::npos, table.message().find("nowhere.lut"));
+    writeBytes("bad.lut", "0 0 0 0 2\n");
+    auto bad = read(name, "table=bad.lut");
+    EXPECT_NE(std::string::npos, bad.message().find("bad.lut, line 1: opacity \"2\""));
+}
+
+TEST_F(VolumeLoader, OtherNamesAreLeftToOthers)
+{
+    auto result = read(path("volume"));
+    EXPECT_NE(osgDB::ReaderWriter::ReadResult::ERROR_IN_READING_FILE, result.status());
+    EXPECT_FALSE(read(path(".volume")).validNode());
+}
