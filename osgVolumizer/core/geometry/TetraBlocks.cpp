@@ -81,7 +81,6 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
                 _stamps[v] = static_cast<std::uint32_t>(blocks.size() - 1);
                 _local[v] = block.vertexCount++;
                 sourceVertices.push_back(v);
-                block.bounds.expand(set.vertices.position(v) - origin);
             }
             tetrahedra[i].v[k] = static_cast<std::uint8_t>(_local[v]);
         }
@@ -95,13 +94,17 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
     const std::size_t stride = recordSize() - 1;
     const auto position = static_cast<std::size_t>(_format.positionOffset());
     records.resize(sourceVertices.size() * recordSize());
-    for (std::size_t i = 0; i < sourceVertices.size(); ++i) {
-        const double* from = set.vertices.record(sourceVertices[i]);
-        double* to = record(i);
-        std::copy(from, from + stride, to);
-        for (std::size_t a = 0; a < 3; ++a)
-            to[position + a] -= origin[static_cast<int>(a)];
-    }
+    for (Block& block : blocks)
+        for (std::uint32_t i = block.firstVertex; i < block.firstVertex + block.vertexCount; ++i) {
+            const double* from = set.vertices.record(sourceVertices[i]);
+            double* to = record(i);
+            std::copy(from, from + stride, to);
+            for (std::size_t a = 0; a < 3; ++a)
+                to[position + a] -= origin[static_cast<int>(a)];
+            const double *p = to + position, *c = to + clipField();
+            block.bounds.expand({p[0], p[1], p[2]});
+            block.clipBounds.expand({c[0], c[1], c[2]});
+        }
 }
 
 void TetraBlocks::findEdges()

@@ -25,7 +25,8 @@ public:
         std::uint32_t firstVertex = 0, vertexCount = 0;
         std::uint32_t firstTetra = 0, tetraCount = 0;
         std::uint32_t firstEdge = 0, edgeCount = 0;
-        Box3d bounds; ///< of the positions, relative to the origin
+        Box3d bounds;     ///< of the positions, relative to the origin
+        Box3d clipBounds; ///< of what clipField() tells
     };
     struct Tetra
     {

@@ -198,11 +198,37 @@ Status Polygonizer::Private::measure()
     nearest = std::numeric_limits<double>::infinity();
     farthest = -nearest;
     double poison = 0.0; // NaN as soon as one depth is not finite
-    for (std::size_t i = 0; i < b.sourceVertices.size(); ++i) {
-        const double d = Slicer::depthOf(plan, b.record(i), b.sourceVertices[i]);
-        poison += d - d;
-        nearest = std::min(nearest, d);
-        farthest = std::max(farthest, d);
+    const auto look = [&](const TetraBlocks::Block& block) {
+        for (std::uint32_t i = block.firstVertex; i < block.firstVertex + block.vertexCount; ++i) {
+            const double d = Slicer::depthOf(plan, b.record(i), b.sourceVertices[i]);
+            poison += d - d;
+            nearest = std::min(nearest, d);
+            farthest = std::max(farthest, d);
+        }
+    };
+    // The extremes lie in few blocks: those that reach farthest come first, the others are looked into
+    // only if they may reach farther still.
+    struct Range
+    {
+        double nearest, farthest;
+    };
+    std::size_t nearBlock = 0, farBlock = 0;
+    Range nearRange{nearest, farthest}, farRange{nearest, farthest};
+    for (std::size_t i = 0; i < b.blocks.size(); ++i) {
+        Range r{};
+        Slicer::depthRange(plan, b.blocks[i], r.nearest, r.farthest);
+        poison += std::isnan(r.nearest) || std::isnan(r.farthest) ? r.nearest - r.farthest : 0.0;
+        if (r.nearest < nearRange.nearest) nearRange = r, nearBlock = i;
+        if (r.farthest > farRange.farthest) farRange = r, farBlock = i;
+    }
+    if (!b.blocks.empty()) {
+        look(b.blocks[nearBlock]);
+        look(b.blocks[farBlock]);
+    }
+    for (const TetraBlocks::Block& block : b.blocks) {
+        Range r{};
+        Slicer::depthRange(plan, block, r.nearest, r.farthest);
+        if (r.nearest < nearest || r.farthest > farthest) look(block);
     }
     if (!(poison == 0.0))
         return {ErrorCode::VALUE_INVALID, "polygonize: the depth of a vertex is not finite."};

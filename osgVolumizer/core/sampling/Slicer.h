@@ -57,6 +57,11 @@ public:
                plan.gradient.z * (p[2] - plan.corner.z);
     }
 
+    /// Bounds of the depths in a block, by one box test; a little wider than rounding needs. All depths
+    /// there may be, where they are not those of planes.
+    static void depthRange(const SlicePlan& plan, const TetraBlocks::Block& block, double& nearest,
+                           double& farthest);
+
     /// Faces and indices of a bin in one number, so that one addition counts both.
     using Count = std::uint64_t;
     static constexpr Count count(std::uint32_t faces, std::uint32_t indices)
