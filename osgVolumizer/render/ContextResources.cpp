@@ -27,9 +27,15 @@ void release(ContextResources& resources, unsigned contextId)
     if (gl) {
         resources.vertices.release(*gl);
         resources.indices.release(*gl);
-        for (GLuint* name :
-             {&resources.accumulation.framebuffer, &resources.accumulation.layerFramebuffer})
+        AccumulationBuffers& buffers = resources.accumulation;
+        LayerBuffers& layers = buffers.layers;
+        for (GLuint* name : {&buffers.framebuffer, &buffers.layerFramebuffer,
+                             &layers.sortedFramebuffer, &layers.rankFramebuffer})
             if (*name) gl->glDeleteFramebuffers(1, name);
+        if (layers.queries[0]) {
+            gl->glDeleteFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
+            gl->glDeleteQueries(LayerBuffers::COUNT, layers.queries);
+        }
     }
 }
 

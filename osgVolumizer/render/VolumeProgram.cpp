@@ -28,6 +28,7 @@ std::string header(const ProgramFeatures& features)
     define(features.rgba, "RGBA");
     define(features.opaqueDepth, "OPAQUE_DEPTH");
     define(features.layerDepth, "LAYER_DEPTH");
+    define(features.ranked, "RANKED");
     define(features.spherical, "SPHERICAL");
     define(features.exact, "EXACT");
     define(features.nearest, "NEAREST");
@@ -77,6 +78,8 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->addUniform(new osg::Uniform("lookupTable", int(UNIT_TABLE)));
     set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
     set->addUniform(new osg::Uniform("layerDepth", int(UNIT_LAYER_DEPTH)));
+    set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
     set->setRenderBinDetails(10, "DepthSortedBin");
     set->setNestRenderBins(false);
     return set;

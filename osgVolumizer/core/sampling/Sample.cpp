@@ -1,6 +1,7 @@
 #include "Sample.h"
 
 #include "ClipRecords.h"
+#include "Interpolate.h"
 #include "TetraCases.h"
 
 #include <glm/geometric.hpp>
@@ -106,8 +107,7 @@ Status sample(const TetraSet& set, std::size_t tetrahedron, const SurfaceFamily&
             const int from = which.farVertex[c], to = which.nearVertex[c];
             const double w = (surface - depth[from]) / (depth[to] - depth[from]);
             const double *p = vertices.record(t[from]), *q = vertices.record(t[to]);
-            double* r = polygon.append();
-            for (int k = 0; k < stride; ++k) r[k] = p[k] + w * (q[k] - p[k]);
+            interpolate(p, q, w, static_cast<std::size_t>(stride), polygon.append());
         }
         polygon.close();
         out.append(polygon);

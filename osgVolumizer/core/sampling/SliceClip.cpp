@@ -1,3 +1,4 @@
+#include "Interpolate.h"
 #include "Slicer.h"
 #include "TetraCases.h"
 
@@ -85,9 +86,7 @@ void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
         for (std::size_t c = 0; c < static_cast<std::size_t>(which.count); ++c) {
             const std::size_t a = which.farVertex[c], b = which.nearVertex[c];
             const double t = (k + 0.5 - f[a]) / (f[b] - f[a]);
-            const double *p = records[a], *q = records[b];
-            double* r = chunk.whole.append();
-            for (std::size_t n = 0; n < stride; ++n) r[n] = p[n] + t * (q[n] - p[n]);
+            interpolate(records[a], records[b], t, stride, chunk.whole.append());
         }
         chunk.whole.close();
         int surface = k;

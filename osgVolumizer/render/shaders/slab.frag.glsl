@@ -26,16 +26,35 @@ uniform sampler2D layerDepth; // of the surfaces that split this segment
 uniform bool inFrontOfLayer;  // which part is drawn
 #endif
 
+#ifdef RANKED
+uniform sampler2D sortedFar, sortedNear; // window depths of the pixel's surfaces, far to near; -1: no more
+uniform int rank;                        // of the surface that ends the segment at its near end
+#endif
+
 #ifdef OPAQUE_DEPTH
-// Where the ray meets what left its depth in a buffer; far away where nothing did.
-float depthOnRay(sampler2D depths)
+// Where the ray has a window depth.
+float rayAt(float windowZ)
 {
-    float windowZ = textureLod(depths, gl_FragCoord.xy * depthTextureScale, 0.0).r;
-    if (windowZ >= 1.0) return 1e30;
     vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
     float z = 2.0 * windowZ - 1.0;
     return (z * dot(clipWOrigin, window) - dot(clipZOrigin, window)) /
            (dot(clipZDirection, window) - z * dot(clipWDirection, window));
+}
+
+// Where the ray meets what left its depth in a buffer; far away where nothing did.
+float depthOnRay(sampler2D depths)
+{
+    float windowZ = textureLod(depths, gl_FragCoord.xy * depthTextureScale, 0.0).r;
+    return windowZ < 1.0 ? rayAt(windowZ) : 1e30;
+}
+#endif
+
+#ifdef RANKED
+float sortedDepth(int i)
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    if (i < 4) return texelFetch(sortedFar, pixel, 0)[max(i, 0)];
+    return i < 8 ? texelFetch(sortedNear, pixel, 0)[i - 4] : -1.0;
 }
 #endif
 
@@ -123,7 +142,6 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     return vec4(color, 1.0 - transmittance);
 }
 #endif
-}
 
 void main()
 {
@@ -145,6 +163,14 @@ void main()
         tNear = max(tNear, tLayer);
     else if (inFrontOfLayer)
         tFar = tLayer < 1e29 ? min(tFar, tLayer) : tNear;
+#endif
+#ifdef RANKED
+    float nearer = sortedDepth(rank), farther = sortedDepth(rank - 1);
+    if (rank > 0) {
+        if (farther < 0.0) discard;
+        tFar = min(tFar, rayAt(farther));
+    }
+    if (nearer >= 0.0) tNear = max(tNear, rayAt(nearer));
 #endif
     if (!(max(tNear, brick.x) < min(tFar, brick.y))) discard;
 
