@@ -28,9 +28,9 @@ KUHN = [(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0
 
 # Temperature, as a fraction of the hottest, to red, green, blue and opacity.
 COLOURS = [
-    (0.00, (0.16, 0.20, 0.45, 0.03)),
-    (0.25, (0.35, 0.12, 0.50, 0.06)),
-    (0.50, (0.85, 0.20, 0.15, 0.14)),
+    (0.00, (0.25, 0.45, 0.85, 0.10)),
+    (0.25, (0.60, 0.25, 0.75, 0.14)),
+    (0.50, (0.90, 0.25, 0.20, 0.20)),
     (0.75, (1.00, 0.60, 0.10, 0.32)),
     (1.00, (1.00, 0.97, 0.75, 0.60)),
 ]
@@ -151,6 +151,56 @@ def colour(fraction):
     return COLOURS[-1][1]
 
 
+SCENE = """#Ascii Scene
+#Version 161
+#Generator OpenSceneGraph 3.6.5
+
+osgVolumizer::VolumeAppearance {{
+  UniqueID 1
+  Name "bent bar"
+  Children 1 {{
+    osgVolumizer::VolumeGeometry {{
+      UniqueID 2
+      TetraSet {{
+        Version Integers 1 1
+        Layout Text 1 "C4F_V3F"
+        Vertices Doubles {values} {{
+{vertices}
+        }}
+        Tetrahedra Indices {indices} {{
+{tetrahedra}
+        }}
+        End
+      }}
+    }}
+  }}
+  Sampling {{
+    Version Integers 1 1
+    Technique Text 1 "AUTOMATIC"
+    Interpolation Text 1 "LINEAR"
+    SamplingMode Text 1 "VIEWPORT_ALIGNED"
+    SamplingSpace Text 1 "OBJECT"
+    SamplingPeriod Doubles 3 0.5 0.5 0.5
+    MaximumSamples Integers 1 4096
+    OpacityUnit Doubles 1 4
+    End
+  }}
+}}
+"""
+
+
+def scene(positions, tetrahedra, colours):
+    def numbers(values):
+        return " ".join(f"{value:.4g}" for value in values)
+
+    return SCENE.format(
+        values=7 * len(positions),
+        vertices="\n".join(numbers(c + p) for c, p in zip(colours, positions)),
+        indices=4 * len(tetrahedra),
+        tetrahedra="\n".join(" ".join(map(str, t)) for t in tetrahedra),
+    )
+
+
 def main():
     positions, tetrahedra, side, arcs, ends = make_mesh()
     rise = solve(*assemble(positions, tetrahedra, side, arcs), ends)
@@ -160,11 +210,7 @@ def main():
         f"{AMBIENT:.0f} to {AMBIENT + hottest:.0f} degrees",
         file=sys.stderr,
     )
-    write(positions, tetrahedra, [colour(t / hottest) for t in rise])
-
-
-def write(p, t, c):
-    pass
+    sys.stdout.write(scene(positions, tetrahedra, [colour(t / hottest) for t in rise]))
 
 
 if __name__ == "__main__":

@@ -84,6 +84,7 @@ void ensureDepth(AccumulationBuffers& buffers, int width, int height, GLenum dep
     buffers.opaqueDepth = makeDepth(buffers.width, buffers.height, depthFormat);
     buffers.color = nullptr;
     buffers.layerDepth = nullptr;
+    buffers.layers.rankDepth = nullptr;
 }
 
 void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorFormat)
@@ -114,11 +115,70 @@ osg::ref_ptr<osg::StateSet> accumulationStateSet()
     return set;
 }
 
+// Depth in float, so that what is written back from a texture is what was captured, to the last bit.
+osg::ref_ptr<osg::Texture2D> makeDepthStencil(int width, int height)
+{
+    return makeTarget(width, height, GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL_EXT,
+                      GL_FLOAT_32_UNSIGNED_INT_24_8_REV);
+}
+
+void makeLayerTextures(osg::State& state, AccumulationBuffers& buffers)
+{
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    LayerBuffers& layers = buffers.layers;
+    const int w = buffers.width, h = buffers.height;
+    const auto attach = [&](GLenum attachment, osg::Texture2D& texture) {
+        gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, attachment, GL_TEXTURE_2D,
+                                  textureName(state, texture), 0);
+    };
+    if (!layers.queries[0]) {
+        gl.glGenQueries(LayerBuffers::COUNT, layers.queries);
+        gl.glGenFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
+        gl.glGenFramebuffers(1, &layers.sortedFramebuffer);
+        gl.glGenFramebuffers(1, &layers.rankFramebuffer);
+    }
+    for (int k = 0; k < LayerBuffers::COUNT; ++k) {
+        layers.layers[k] = makeDepthStencil(w, h);
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.layerFramebuffers[k]);
+        attach(GL_DEPTH_STENCIL_ATTACHMENT, *layers.layers[k]);
+        glDrawBuffer(GL_NONE);
+        glReadBuffer(GL_NONE);
+    }
+    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.sortedFramebuffer);
+    for (int i = 0; i < 2; ++i) {
+        layers.sorted[i] = makeTarget(w, h, GL_RGBA32F_ARB, GL_RGBA, GL_FLOAT);
+        attach(GL_COLOR_ATTACHMENT0_EXT + static_cast<GLenum>(i), *layers.sorted[i]);
+    }
+    const GLenum both[2] = {GL_COLOR_ATTACHMENT0_EXT, GL_COLOR_ATTACHMENT1_EXT};
+    gl.glDrawBuffers(2, both);
+    layers.rankDepth = makeDepthStencil(w, h);
+    layers.rankColor = nullptr;
+    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.rankFramebuffer);
+    attach(GL_DEPTH_STENCIL_ATTACHMENT, *layers.rankDepth);
+}
+
 } // namespace
+
+LayerBuffers& Accumulation::layerBuffers(osg::State& state)
+{
+    AccumulationBuffers& buffers = contextResources(state)->accumulation;
+    LayerBuffers& layers = buffers.layers;
+    if (!layers.rankDepth) makeLayerTextures(state, buffers);
+    if (layers.rankColor != buffers.color) {
+        osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+        const GLuint color = textureName(state, *buffers.color);
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.rankFramebuffer);
+        gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D,
+                                  color, 0);
+        layers.rankColor = buffers.color;
+    }
+    return layers;
+}
 
 bool Accumulation::needsTarget(const ContextResources& resources) const
 {
-    return attachmentBits(resources, _drawFramebuffer, GL_COLOR_ATTACHMENT0_EXT, GL_BACK_LEFT,
+    return _targetRequired ||
+           attachmentBits(resources, _drawFramebuffer, GL_COLOR_ATTACHMENT0_EXT, GL_BACK_LEFT,
                           GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE) < _settings.bits;
 }
 

@@ -36,13 +36,18 @@ public:
     /// ...for segments to be split at.
     void endLayer(osg::RenderInfo& renderInfo);
 
+    /// Before the frame is drawn: there has to be a target, whatever the framebuffer has.
+    void requireTarget() { _targetRequired = true; }
+    /// The buffers of sorted layers, made when first asked for, with the target's colour.
+    LayerBuffers& layerBuffers(osg::State& state);
+
 private:
     bool needsTarget(const ContextResources& resources) const;
     void copyColor(osg::State& state, AccumulationBuffers& buffers);
     void writeBack(osg::State& state, AccumulationBuffers& buffers);
 
     AccumulationSettings _settings;
-    bool _redirected = false;
+    bool _redirected = false, _targetRequired = false;
     GLint _drawFramebuffer = 0, _readFramebuffer = 0, _sampleBuffers = 0;
 };
 

@@ -29,10 +29,16 @@ void release(ContextResources& resources, osg::State& state)
     if (gl) {
         resources.vertices.release(*gl);
         resources.indices.release(*gl);
-        for (GLuint* name :
-             {&resources.accumulation.framebuffer, &resources.accumulation.layerFramebuffer,
-              &resources.rays.framebuffer})
+        AccumulationBuffers& buffers = resources.accumulation;
+        LayerBuffers& layers = buffers.layers;
+        for (GLuint* name : {&buffers.framebuffer, &buffers.layerFramebuffer,
+                             &layers.sortedFramebuffer, &layers.rankFramebuffer,
+                              &resources.rays.framebuffer})
             if (*name) gl->glDeleteFramebuffers(1, name);
+        if (layers.queries[0]) {
+            gl->glDeleteFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
+            gl->glDeleteQueries(LayerBuffers::COUNT, layers.queries);
+        }
     }
 }
 

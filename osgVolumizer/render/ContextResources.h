@@ -24,6 +24,17 @@ private:
     GLuint _name = 0;
 };
 
+/// Buffers of the depth layers that sort surfaces: see LayerLeaf.
+struct LayerBuffers
+{
+    static constexpr int COUNT = 8;
+
+    GLuint layerFramebuffers[COUNT] = {}, sortedFramebuffer = 0, rankFramebuffer = 0;
+    GLuint queries[COUNT] = {};
+    osg::ref_ptr<osg::Texture2D> layers[COUNT], sorted[2], rankDepth; ///< null until needed
+    const osg::Texture2D* rankColor = nullptr; ///< that the rank framebuffer has for colour
+};
+
 /// The colour and depth that volumes are accumulated in, a copy of the opaque scene's depth, and the depth of
 /// the surfaces that split segments. One a context, grown to the largest viewport seen.
 struct AccumulationBuffers
@@ -32,6 +43,7 @@ struct AccumulationBuffers
     GLenum colorFormat = 0, depthFormat = 0;
     GLuint framebuffer = 0, layerFramebuffer = 0;
     osg::ref_ptr<osg::Texture2D> color, depth, opaqueDepth, layerDepth;
+    LayerBuffers layers;
 };
 
 /// Where values of rays are gathered. One a context, grown to the largest viewport seen.

@@ -79,7 +79,7 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     if (voxels)
         table = appearance->tableTextures().get(*appearance->getLookupTable(), voxels->getRange(),
                                                 usedLookup(*appearance, *volume->prepared));
-    volume->look = makeLook(*volume, table);
+    volume->look = makeLook(*volume, table, visitor);
     if (voxels) {
         selectBricks(*volume, *voxels, table, visitor);
         count(visitor.getCurrentCamera(), visitor.getFrameStamp(), "osgVolumizer bricks total",

@@ -92,6 +92,17 @@ std::optional<ForeignLeaf> ForeignLeaf::examine(osgUtil::RenderLeaf& leaf,
     return result;
 }
 
+const osg::Depth* ForeignLeaf::depth() const { return effectiveDepth(_leaf->_parent); }
+
+osgUtil::RenderLeaf* ForeignLeaf::copy(osg::StateSet& state) const
+{
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf =
+        new osgUtil::RenderLeaf(const_cast<osg::Drawable*>(_leaf->getDrawable()), _leaf->_projection,
+                                _leaf->_modelview, _leaf->_depth, _leaf->_traversalOrderNumber);
+    _leaf->_parent->find_or_insert(&state)->addLeaf(leaf);
+    return leaf.get();
+}
+
 osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, bool layer,
                                         osg::Drawable* drawable) const
 {
@@ -106,8 +117,11 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
     for (int row = 0; row < 4; ++row)
         (*projection)(row, 2) = scale * p(row, 2) + offset * p(row, 3);
 
-    const osg::Depth* depth = effectiveDepth(_leaf->_parent);
-    const double rangeNear = depth ? depth->getZNear() : 0.0, rangeFar = depth ? depth->getZFar() : 1.0;
+    const osg::Depth* depth = this->depth();
+    // Segments are split at true depths, whatever range the leaf draws to.
+    const bool ownRange = depth && !layer;
+    const double rangeNear = ownRange ? depth->getZNear() : 0.0;
+    const double rangeFar = ownRange ? depth->getZFar() : 1.0;
     const auto window = [&](double z) {
         return rangeNear + (rangeFar - rangeNear) * 0.5 * (z + 1.0);
     };

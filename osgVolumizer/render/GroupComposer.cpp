@@ -17,6 +17,8 @@ namespace {
 
 // More rectangles would cost more than they save.
 constexpr std::size_t MAXIMUM_REGIONS = 8;
+// When to sort fragments, and what a drawable that is no mesh counts for.
+constexpr std::size_t MAXIMUM_SORTED_TRIANGLES = 20000, UNKNOWN_TRIANGLES = 1000;
 constexpr double INFINITE_DEPTH = std::numeric_limits<double>::infinity();
 
 double middle(const core::DepthInterval& d) { return 0.5 * (d.nearDepth + d.farDepth); }
@@ -105,7 +107,7 @@ void GroupComposer::makeLooks(PreparedVolume& volume, const Region& region)
         look->surfaceNormal = volume.sliced->surfaceNormal();
         look->features.spherical = volume.sliced->spherical();
     } else if (!alone()) {
-        look->step = _step; // one for all
+        look->step = _step; // the same samples in every region, and one for each volume in a thin slab
     }
     volume.looks[WHOLE] = look;
     for (const Part part : {BEHIND_LAYER, IN_FRONT_OF_LAYER}) {
@@ -162,9 +164,72 @@ void GroupComposer::compose(std::vector<OrderedLeaf>& leaves)
     for (const Region& region : findRegions()) composeRegion(region, leaves);
 }
 
+// Sorting draws every surface twice per layer; worth it until triangles cost more than intervals do.
+bool GroupComposer::isWorthSorting(const Region& region) const
+{
+    if (region.surfaces.empty() || _volumes.size() != 1 || _volumes.front().sliced) return false;
+    std::size_t triangles = 0;
+    for (std::size_t s : region.surfaces)
+        triangles += _surfaces[s].mesh ? _surfaces[s].mesh->triangleCount() : UNKNOWN_TRIANGLES;
+    return triangles <= MAXIMUM_SORTED_TRIANGLES;
+}
+
+void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>& leaves)
+{
+    using Step = LayerLeaf::Step;
+    PreparedVolume& volume = _volumes.front();
+    const double depth = volume.instance->look->referenceDepth;
+    const std::shared_ptr<const VolumeMesh> mesh = meshOf(volume, {volume.instance->depth});
+    _accumulation.requireTarget();
+    for (int k = 0; k < LayerLeaf::LAYER_COUNT; ++k) {
+        addLayerStep(Step::BEGIN_CAPTURE, k, region, depth, leaves);
+        addSurfaces(Step::BEGIN_CAPTURE, k, region, depth, leaves);
+        addLayerStep(Step::END_CAPTURE, k, region, depth, leaves);
+    }
+    addLayerStep(Step::SORT, 0, region, depth, leaves);
+    for (int rank = 0; rank <= LayerLeaf::LAYER_COUNT; ++rank) {
+        auto look = std::make_shared<VolumeLook>(*volume.looks[WHOLE]);
+        look->features.ranked = true;
+        look->rank = rank;
+        addLayerStep(Step::BEGIN_SEGMENT, rank, region, depth, leaves);
+        addVolume(volume, mesh, look, depth, leaves);
+        addLayerStep(Step::END_SEGMENT, rank, region, depth, leaves);
+        const bool rest = rank == LayerLeaf::LAYER_COUNT;
+        const int query = rest ? rank - 1 : rank;
+        const Step begin = rest ? Step::BEGIN_REST : Step::BEGIN_RANK;
+        addLayerStep(begin, query, region, depth, leaves);
+        addSurfaces(begin, rank, region, depth, leaves);
+        addLayerStep(rest ? Step::END_REST : Step::END_RANK, query, region, depth, leaves);
+    }
+}
+
+void GroupComposer::addLayerStep(LayerLeaf::Step step, int index, const Region& region, double depth,
+                                 std::vector<OrderedLeaf>& leaves)
+{
+    const osgUtil::RenderLeaf& beside = *_volumes.front().instance->leaf;
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
+        new LayerLeaf(&_accumulation, step, index, areaOf(region)), beside._projection, beside._modelview);
+    beside._parent->_parent->find_or_insert(LayerLeaf::stateSet(step))->addLeaf(leaf);
+    leaves.push_back({depth, leaf.get()});
+}
+
+void GroupComposer::addSurfaces(LayerLeaf::Step step, int index, const Region& region, double depth,
+                                std::vector<OrderedLeaf>& leaves)
+{
+    for (std::size_t s : region.surfaces) {
+        const ForeignLeaf& surface = *_surfaces[s].leaf;
+        leaves.push_back({depth, surface.copy(*layerSurfaceState(step, index, surface.depth()))});
+        ++_counts.surfacePieces;
+    }
+}
+
 void GroupComposer::composeRegion(const Region& region, std::vector<OrderedLeaf>& leaves)
 {
     for (PreparedVolume& volume : _volumes) makeLooks(volume, region);
+    if (isWorthSorting(region)) {
+        composeSorted(region, leaves);
+        return;
+    }
     const std::vector<core::ScheduledInterval> intervals = schedule(region);
     splitSurfaces(region, intervals);
     _counts.intervals += static_cast<double>(intervals.size());
@@ -209,12 +274,13 @@ void GroupComposer::composeMixed(const Region& region,
     }
     for (std::size_t i = 0; i < order.size(); ++i) {
         PreparedVolume& volume = _volumes[static_cast<std::size_t>(order[i])];
-        addVolume(volume, meshes[i], volume.sliced ? WHOLE : BEHIND_LAYER, depth, leaves);
+        addVolume(volume, meshes[i], volume.looks[volume.sliced ? WHOLE : BEHIND_LAYER], depth,
+                  leaves);
     }
     addPieces(region, intervals, interval, false, leaves);
     for (std::size_t i = order.size(); i-- > 0;) {
         PreparedVolume& volume = _volumes[static_cast<std::size_t>(order[i])];
-        if (!volume.sliced) addVolume(volume, meshes[i], IN_FRONT_OF_LAYER, depth, leaves);
+        if (!volume.sliced) addVolume(volume, meshes[i], volume.looks[IN_FRONT_OF_LAYER], depth, leaves);
     }
 }
 
@@ -223,7 +289,7 @@ void GroupComposer::flush(std::vector<OrderedLeaf>& leaves)
     if (_pendingVolume < 0) return;
     PreparedVolume& volume = _volumes[static_cast<std::size_t>(_pendingVolume)];
     const double depth = middle(volume.pending.front());
-    addVolume(volume, meshOf(volume, volume.pending), WHOLE, depth, leaves);
+    addVolume(volume, meshOf(volume, volume.pending), volume.looks[WHOLE], depth, leaves);
     volume.pending.clear();
     _pendingVolume = -1;
 }
@@ -239,11 +305,11 @@ GroupComposer::meshOf(const PreparedVolume& volume,
 }
 
 void GroupComposer::addVolume(PreparedVolume& volume, std::shared_ptr<const VolumeMesh> mesh,
-                              Part part, double depth, std::vector<OrderedLeaf>& leaves)
+                              const std::shared_ptr<const VolumeLook>& look, double depth,
+                              std::vector<OrderedLeaf>& leaves)
 {
     if (mesh->batches.empty()) return;
     VolumeInstance& instance = *volume.instance;
-    const std::shared_ptr<const VolumeLook>& look = volume.looks[part];
     _counts.faces += mesh->faceCount;
     _counts.polygons += static_cast<double>(mesh->indices.size() / 3);
     ++_counts.volumeLeaves;
@@ -283,12 +349,16 @@ void GroupComposer::addPieces(const Region& region,
     }
 }
 
+glm::ivec4 GroupComposer::areaOf(const Region& region) const
+{
+    return region.rectangles.empty() ? _viewport : region.rectangles.front();
+}
+
 void GroupComposer::addStep(AccumulationLeaf::Step step, const Region& region, double depth,
                             std::vector<OrderedLeaf>& leaves)
 {
-    const glm::ivec4 area = region.rectangles.empty() ? _viewport : region.rectangles.front();
     leaves.push_back({depth, accumulationLeaf(_accumulation, step,
-                                              *_volumes.front().instance->leaf, area)});
+                                              *_volumes.front().instance->leaf, areaOf(region))});
 }
 
 } // namespace render

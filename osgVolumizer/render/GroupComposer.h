@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Accumulation.h"
+#include "DepthLayers.h"
 #include "ForeignLeaf.h"
 #include "MeshBuilder.h"
 #include "SurfaceMesh.h"
@@ -36,7 +37,9 @@ struct MergeGroup
 
 /// Makes the leaves of one group, far to near.
 ///
-/// A volume by itself is one leaf. Where surfaces are in it the interval is drawn as: the surfaces' nearest
+/// A volume by itself is one leaf. Where a few surfaces are in one volume, their fragments are sorted: see
+/// LayerLeaf; that is exact. Where there are many triangles or several volumes, depth is cut into
+/// intervals. An interval of a volume and surfaces is drawn as: the surfaces' nearest
 /// depth into a layer buffer, the volume behind that depth, the surfaces, the volume in front of it; this is exact
 /// where a pixel has one surface in the interval, and off by the interval's thickness where it has
 /// more. Several volumes are drawn in slabs one step thick, alternating who goes first: the error of drawing one
@@ -86,6 +89,12 @@ private:
     void prepareVolumes();
     void prepareSurfaces(std::vector<OrderedLeaf>& leaves);
     std::vector<Region> findRegions() const;
+    bool isWorthSorting(const Region& region) const;
+    void composeSorted(const Region& region, std::vector<OrderedLeaf>& leaves);
+    void addLayerStep(LayerLeaf::Step step, int index, const Region& region, double depth,
+                      std::vector<OrderedLeaf>& leaves);
+    void addSurfaces(LayerLeaf::Step step, int index, const Region& region, double depth,
+                     std::vector<OrderedLeaf>& leaves);
     void composeRegion(const Region& region, std::vector<OrderedLeaf>& leaves);
     void makeLooks(PreparedVolume& volume, const Region& region);
     std::vector<core::ScheduledInterval> schedule(const Region& region) const;
@@ -94,14 +103,16 @@ private:
                       std::size_t interval, const std::vector<int>& order,
                       std::vector<OrderedLeaf>& leaves);
     void flush(std::vector<OrderedLeaf>& leaves);
-    void addVolume(PreparedVolume& volume, std::shared_ptr<const VolumeMesh> mesh, Part part,
-                   double depth, std::vector<OrderedLeaf>& leaves);
+    void addVolume(PreparedVolume& volume, std::shared_ptr<const VolumeMesh> mesh,
+                   const std::shared_ptr<const VolumeLook>& look, double depth,
+                   std::vector<OrderedLeaf>& leaves);
     void addPieces(const Region& region, const std::vector<core::ScheduledInterval>& intervals,
                    std::size_t interval, bool layer, std::vector<OrderedLeaf>& leaves);
     void addStep(AccumulationLeaf::Step step, const Region& region, double depth,
                  std::vector<OrderedLeaf>& leaves);
     std::shared_ptr<const VolumeMesh> meshOf(const PreparedVolume& volume,
                                              const std::vector<core::DepthInterval>& intervals) const;
+    glm::ivec4 areaOf(const Region& region) const;
     bool alone() const { return _volumes.size() == 1 && _surfaces.empty(); }
 
     const MergeGroup& _group;

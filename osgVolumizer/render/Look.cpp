@@ -3,6 +3,8 @@
 #include "Matrices.h"
 #include "ReportOnce.h"
 
+#include <osgUtil/CullVisitor>
+
 #include <glm/matrix.hpp>
 
 #include <algorithm>
@@ -107,6 +109,25 @@ double sampleDepth(const glm::dmat4& toEye, const core::Box3d& bounds,
     return std::max(1.0 / samplesPerDepth, (farthest - nearest) / sampling.maximumSamples);
 }
 
+// See VolumeLook::pixelMargin.
+glm::dvec3 pixelMargin(const glm::dmat4& toEye, const core::Box3d& bounds,
+                       osgUtil::CullVisitor& visitor)
+{
+    constexpr double PIXELS = 0.125; // GL keeps at least 4 bits of a pixel's fraction
+    const osg::Viewport* viewport = visitor.getViewport();
+    if (!viewport || !visitor.getProjectionMatrix()) return glm::dvec3(0.0);
+    const glm::dmat4 p = toGlm(*visitor.getProjectionMatrix());
+    double w = 0.0;
+    for (int i = 0; i < 8; ++i)
+        w = std::max(w, p[3][3] + p[2][3] * (toEye * glm::dvec4(bounds.corner(i), 1.0)).z);
+    const glm::dmat2 clipToEye = glm::inverse(glm::dmat2(p));
+    const glm::dmat3 fromEye = glm::inverse(glm::dmat3(toEye));
+    const glm::dvec3 right(clipToEye[0] * (2.0 * w / viewport->width()), 0.0);
+    const glm::dvec3 up(clipToEye[1] * (2.0 * w / viewport->height()), 0.0);
+    const glm::dvec3 margin = PIXELS * (glm::abs(fromEye * right) + glm::abs(fromEye * up));
+    return std::isfinite(margin.x + margin.y + margin.z) ? margin : glm::dvec3(0.0);
+}
+
 // How the shader gets a colour out of a brick.
 void setInterpolation(const VolumeAppearance& appearance, const TableTexture& table,
                       ProgramFeatures& features)
@@ -168,7 +189,8 @@ VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
     return runs ? appearance.getLookup() : VolumeAppearance::AFTER_INTERPOLATION;
 }
 
-std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table)
+std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table,
+                                     osgUtil::CullVisitor& visitor)
 {
     const VolumeAppearance& appearance = *volume.appearance;
     const PreparedGeometry& prepared = *volume.prepared;
@@ -179,12 +201,15 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     features.spherical = !features.slab && volume.sampling.mode == SamplingMode::SPHERICAL;
     if (appearance.getVoxels()) setValues(appearance, *appearance.getVoxels(), *look);
     look->frameToUnits = glm::dmat3(prepared.frameToObject) / appearance.getEffectiveOpacityUnit();
-    look->center = prepared.bounds.center();
+    look->center = prepared.regionBox.center();
     const glm::dmat4 toEye = toGlm(*volume.frameToEye);
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;
     look->step = sampleDepth(toEye, prepared.regionBox, volume.sampling);
     look->maximumSteps = volume.sampling.maximumSamples + 2;
     if (features.slab) {
+        look->regionMin = glm::vec3(prepared.regionBox.min);
+        look->regionMax = glm::vec3(prepared.regionBox.max);
+        look->pixelMargin = pixelMargin(toEye, prepared.regionBox, visitor);
         features.planeCount = static_cast<int>(prepared.obliquePlanes.size());
         for (const core::Plane& p : prepared.obliquePlanes)
             look->planes.emplace_back(glm::dvec4(p.normal, p.offset));

@@ -21,13 +21,17 @@ namespace render {
 
 namespace {
 
-// Depth range of the volume in front of the near plane; false where nothing is.
+// Depth range of the volume between the near and the far plane; false where nothing is.
 bool findDepthRange(VolumeInstance& volume, const core::View& view)
 {
     const glm::dmat4& p = view.projection;
     // The near plane is where clip z = -clip w.
     const double a = p[2][2] + p[2][3], b = p[3][2] + p[3][3];
     const double nearPlane = a != 0.0 ? b / a : 0.0;
+    // The far plane is where clip z = clip w; projections without one put it nowhere in front.
+    const double c = p[2][2] - p[2][3], d = p[3][2] - p[3][3];
+    const double farPlane =
+        c != 0.0 && d / c > nearPlane ? d / c : std::numeric_limits<double>::infinity();
     double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
     for (const SelectedBrick& brick : volume.bricks) {
         for (int i = 0; i < 8; ++i) {
@@ -43,7 +47,7 @@ bool findDepthRange(VolumeInstance& volume, const core::View& view)
             farthest = std::max(farthest, depth);
         }
     }
-    volume.depth = {std::max(nearest, nearPlane), farthest};
+    volume.depth = {std::max(nearest, nearPlane), std::min(farthest, farPlane)};
     return volume.depth.nearDepth < volume.depth.farDepth;
 }
 

@@ -15,8 +15,8 @@ namespace render {
 
 namespace {
 
-// The affine map position -> voxel coordinate that explicit voxel coordinates state, if it is one for the
-// whole set: taken from the largest tetrahedron and checked at every vertex.
+// The affine map position -> voxel coordinate that explicit voxel coordinates state, if it is one
+// for the whole set: taken from the largest tetrahedron and checked at every vertex.
 std::optional<glm::dmat4> globalVoxelMap(const core::TetraSet& set)
 {
     const core::VertexArray& v = set.vertices;
@@ -37,7 +37,8 @@ std::optional<glm::dmat4> globalVoxelMap(const core::TetraSet& set)
     }
     if (!(best > 0.0) || !(std::abs(glm::determinant(glm::dmat3(map))) > 0.0)) return std::nullopt;
     core::Box3d extent;
-    for (std::size_t k = 0; k < v.size(); ++k) extent.expand(v.voxelCoordinate(k));
+    for (std::size_t k = 0; k < v.size(); ++k)
+        extent.expand(v.voxelCoordinate(k));
     const glm::dvec3 size = extent.size();
     const double tolerance = 1e-9 * std::max({size.x, size.y, size.z, 1e-300});
     for (std::size_t k = 0; k < v.size(); ++k) {
@@ -56,6 +57,15 @@ glm::dmat4 voxelsToObject(const Voxels& voxels)
                       glm::dvec3(s.x(), s.y(), s.z()));
 }
 
+// Unlike glm::inverse, leaves the last row exactly what it is.
+glm::dmat4 affineInverse(const glm::dmat4& m)
+{
+    const glm::dmat3 linear = glm::inverse(glm::dmat3(m));
+    glm::dmat4 result(linear);
+    result[3] = glm::dvec4(-(linear * glm::dvec3(m[3])), 1.0);
+    return result;
+}
+
 // The tetra set with positions mapped, and voxel coordinates dropped or kept.
 core::TetraSet mapped(const core::TetraSet& set, const glm::dmat4& map, bool keepVoxelCoordinates)
 {
@@ -72,8 +82,7 @@ core::TetraSet mapped(const core::TetraSet& set, const glm::dmat4& map, bool kee
         if (format.voxelCoordinateSize > 0) std::copy_n(in, 3, out);
         std::copy_n(in + from.colorOffset(), from.colorSize, out + format.colorOffset());
         std::copy_n(in + from.userOffset(), from.userSize, out + format.userOffset());
-        result.vertices.setPosition(
-            i, glm::dvec3(map * glm::dvec4(set.vertices.position(i), 1.0)));
+        result.vertices.setPosition(i, glm::dvec3(map * glm::dvec4(set.vertices.position(i), 1.0)));
     }
     return result;
 }
@@ -110,10 +119,11 @@ std::shared_ptr<const PreparedGeometry> prepare(const core::TetraSet& set, const
     if (explicitCoordinates)
         objectToVoxel = globalVoxelMap(set);
     else if (voxels)
-        objectToVoxel = glm::inverse(voxelsToObject(*voxels));
+        objectToVoxel = affineInverse(voxelsToObject(*voxels));
     result->voxelFrame = objectToVoxel.has_value();
     if (objectToVoxel) {
-        result->frameToObject = glm::inverse(*objectToVoxel);
+        result->frameToObject =
+            explicitCoordinates ? affineInverse(*objectToVoxel) : voxelsToObject(*voxels);
         result->tetras = mapped(set, *objectToVoxel, false);
     } else {
         const glm::dvec3 center = set.bounds().center();

@@ -62,10 +62,15 @@ private:
 
     void appendBrick(const SelectedBrick& brick, const core::DepthInterval& interval)
     {
-        const core::DepthInterval depths = depthsOf(brick.box);
+        const glm::dvec3& margin = _volume.look->pixelMargin;
+        const core::Box3d box{brick.box.min - margin, brick.box.max + margin};
+        const core::DepthInterval depths = depthsOf(box);
         if (depths.farDepth <= interval.nearDepth || depths.nearDepth >= interval.farDepth) return;
-        _polytope.setBox(brick.box);
-        for (const core::Plane& plane : _volume.prepared->obliquePlanes) _polytope.clip(plane, CUT);
+        _polytope.setBox(box);
+        for (core::Plane plane : _volume.prepared->obliquePlanes) {
+            plane.offset += glm::dot(glm::abs(plane.normal), margin);
+            _polytope.clip(plane, CUT);
+        }
         // A little beyond the near plane, so that the cap on it is not cut off by GL.
         const double nearest = std::max(interval.nearDepth, _nearPlane);
         if (depths.nearDepth < nearest) _polytope.clip(depthPlane(_view.toEye, nearest), CUT);

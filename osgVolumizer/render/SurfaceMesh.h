@@ -24,6 +24,8 @@ public:
     /// Of the vertices themselves: tighter than that of the bounding box.
     const BoxInView& view() const { return _view; }
 
+    std::size_t triangleCount() const { return _triangles.size(); }
+
     /// Indices of the triangles that reach into each interval, far to near, three each.
     using Indices = std::shared_ptr<const std::vector<unsigned>>;
     std::vector<Indices> split(const std::vector<core::DepthInterval>& farToNear) const;

@@ -93,6 +93,9 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
         uniforms.set("maximumSteps", static_cast<float>(look.maximumSteps));
         if (look.features.layerDepth)
             uniforms.set("inFrontOfLayer", look.inFrontOfLayer ? 1 : 0);
+        if (look.features.ranked) uniforms.set("rank", look.rank);
+        uniforms.set("regionMin", look.regionMin);
+        uniforms.set("regionMax", look.regionMax);
         uniforms.set("planes", look.planes);
         uniforms.set("isoTexel", look.isoTexel);
     } else {
@@ -107,6 +110,10 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
     if (!buffers.opaqueDepth) return;
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
     if (features.layerDepth) state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.layerDepth.get());
+    if (features.ranked) {
+        state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.layers.sorted[0].get());
+        state.applyTextureAttribute(UNIT_SORTED_NEAR, buffers.layers.sorted[1].get());
+    }
     uniforms.set("depthTextureScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
                                                 1.0f / static_cast<float>(buffers.height)));
     uniforms.set("clipZOrigin", glm::vec3(rays.clipZOrigin));
@@ -242,7 +249,8 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
     // OSG compares attributes by address: make it bind its own again whatever ours were.
-    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH, UNIT_LAYER_DEPTH})
+    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH, UNIT_LAYER_DEPTH, UNIT_SORTED_FAR,
+                          UNIT_SORTED_NEAR})
         state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }
 

@@ -61,8 +61,14 @@ struct VolumeLook
     double step = 1.0;                ///< between samples or slices: depth, distance or frame units
     glm::dvec3 surfaceNormal{0.0};    ///< slices: frame units; along which `step` is counted
     bool inFrontOfLayer = false;      ///< slabs: which part of a segment split by surfaces
+    int rank = 0;                     ///< slabs: between which ranks of surfaces
     std::vector<glm::ivec4> scissors; ///< window rectangles to draw in; none: everywhere
     int maximumSteps = 1;
+    glm::vec3 regionMin{0.0f}, regionMax{0.0f}; ///< slabs: box of the whole volume (frame)
+    /// Slabs: part of a pixel, in the frame. Faces are this much larger than what they stand for: which
+    /// pixels a segment covers is for the shader to say, whose answer does not depend on how GL
+    /// rounds vertices or whom it gives the pixels on an edge.
+    glm::dvec3 pixelMargin{0.0};
     std::vector<glm::vec4> planes; ///< the region's half-spaces (frame)
 };
 

@@ -28,6 +28,7 @@ std::string header(const ProgramFeatures& features)
     define(features.rgba, "RGBA");
     define(features.opaqueDepth, "OPAQUE_DEPTH");
     define(features.layerDepth, "LAYER_DEPTH");
+    define(features.ranked, "RANKED");
     define(features.spherical, "SPHERICAL");
     define(features.exact, "EXACT");
     define(features.nearest, "NEAREST");
@@ -76,11 +77,15 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     // OSG's transparent bins drop fragments of alpha 0, which may still carry colour.
     set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f),
                               StateAttribute::OFF | StateAttribute::PROTECTED);
+    // Segments end at near and far themselves: rounding must not cut off the face on the near plane.
+    if (features.slab) set->setMode(GL_DEPTH_CLAMP, StateAttribute::ON | StateAttribute::PROTECTED);
     set->setMode(GL_CULL_FACE, StateAttribute::OFF | StateAttribute::PROTECTED);
     set->addUniform(new osg::Uniform("voxels", int(UNIT_VOXELS)));
     set->addUniform(new osg::Uniform("lookupTable", int(UNIT_TABLE)));
     set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
     set->addUniform(new osg::Uniform("layerDepth", int(UNIT_LAYER_DEPTH)));
+    set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
     set->setRenderBinDetails(10, "DepthSortedBin");
     set->setNestRenderBins(false);
     return set;

@@ -20,6 +20,7 @@ struct ProgramFeatures
     bool rgba = false;   ///< voxels are colours, not values to look up
     bool opaqueDepth = false;
     bool layerDepth = false; ///< surfaces split the segment; expects opaqueDepth
+    bool ranked = false; ///< the segment lies between two ranks of surfaces; expects opaqueDepth
     bool spherical = false; ///< slices are spheres about the eye
     bool exact = false;     ///< interpolate from fetched samples, in full precision
     bool nearest = false, cubic = false; ///< else linear
@@ -44,7 +45,7 @@ struct ProgramFeatures
         std::uint64_t result =
             static_cast<std::uint64_t>(planeCount) << 3 | static_cast<std::uint64_t>(rayFunction);
         for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth, layerDepth,
-                          spherical, exact, nearest, cubic, before, preIntegrated,
+                          ranked, spherical, exact, nearest, cubic, before, preIntegrated,
                           smoothTable, shading, gradientTexture})
             result = result << 1 | std::uint64_t(flag);
         return result;
@@ -52,7 +53,15 @@ struct ProgramFeatures
 };
 
 /// Texture units of the samplers.
-enum TextureUnit : unsigned { UNIT_VOXELS = 0, UNIT_TABLE = 1, UNIT_OPAQUE_DEPTH = 2, UNIT_LAYER_DEPTH = 3 };
+enum TextureUnit : unsigned {
+    UNIT_VOXELS,
+    UNIT_TABLE,
+    UNIT_OPAQUE_DEPTH,
+    UNIT_LAYER_DEPTH,
+    UNIT_SORTED_FAR, ///< the four farthest depths of a pixel's surfaces
+    UNIT_SORTED_NEAR,
+    UNIT_FIRST_LAYER ///< and the following: captured depths
+};
 /// Vertex attributes.
 enum Attribute : unsigned {
     ATTRIBUTE_POSITION,

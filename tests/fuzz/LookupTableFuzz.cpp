@@ -1,18 +1,29 @@
-// Any text as a .lut: either refused with a reason, or points that a table takes.
+// Any text as a .lut or .tf: either refused with a reason, or points that a table takes.
 #include <osgVolumizer/LookupTable.h>
 
 #include <cstdlib>
 #include <string>
 
+using namespace osgVolumizer;
+
+namespace {
+
+void check(const Result<LookupPoints>& points)
+{
+    if (!points.ok()) {
+        if (points.status.text.empty()) std::abort();
+        return;
+    }
+    osg::ref_ptr<LookupTable> table = new LookupTable;
+    if (!table->setPoints(*points, LookupTable::DATA_VALUES).ok()) std::abort();
+}
+
+} // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size)
 {
     const std::string text(reinterpret_cast<const char*>(data), size);
-    auto points = osgVolumizer::parseLookupTable(text, "fuzz.lut");
-    if (!points.ok()) {
-        if (points.status.text.empty()) std::abort();
-        return 0;
-    }
-    osg::ref_ptr<osgVolumizer::LookupTable> table = new osgVolumizer::LookupTable;
-    if (!table->setPoints(*points, osgVolumizer::LookupTable::DATA_VALUES).ok()) std::abort();
+    check(parseLookupTable(text, "fuzz.lut"));
+    check(parseTransferFunctionFile(text, "fuzz.tf"));
     return 0;
 }

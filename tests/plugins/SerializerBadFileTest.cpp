@@ -91,6 +91,8 @@ const Damage damages[] = {
     {"TetraSet", "1 1", "1 0", "Version", "0"},
     {"TetraSet", "1 1", "2 1", "Version", "value 1 of 2"},
     {"Technique", "SLABS", "SLUBS", "Technique", "SLUBS"},
+    {"Lookup", "AUTOMATIC", "MAGICAL", "Lookup", "MAGICAL"},
+    {"ExactFiltering", "1 0", "1 2", "ExactFiltering", "2"},
     {"SamplingMode", "VIEWPORT", "SIDEWAYS", "SamplingMode", "SIDEWAYS"},
     {"SamplingPeriod", "1 1 1", "1 0 1", "SamplingPeriod", "0"},
     {"SamplingPeriod", "1 1 1", "1 nan 1", "SamplingPeriod", "nan"},
@@ -208,7 +210,8 @@ TEST_P(BadFileTest, CutTextOfAWholeSceneIsSurvived)
     if (GetParam() == std::string("osgb")) return; // see above
     const std::string content = write(*makeScene());
     std::size_t damaged = 0;
-    for (std::size_t length = 0; length < content.size(); length += 17)
+    // An empty file is no case for us: OSG does not know its format, and leaks its options.
+    for (std::size_t length = 17; length < content.size(); length += 17)
         damaged += !restIsThere(read(content.substr(0, length)).get());
     EXPECT_GT(damaged, content.size() / 17 / 2);
 }

@@ -8,11 +8,19 @@
 #include <support/Compare.h>
 #include <support/OracleView.h>
 
+#include <gtest/gtest.h>
+
 #include <functional>
 #include <memory>
 
 namespace osgVolumizer {
 namespace test {
+
+/// For INSTANTIATE_TEST_SUITE_P.
+inline std::string techniqueName(const ::testing::TestParamInfo<VolumeAppearance::Technique>& info)
+{
+    return info.param == VolumeAppearance::SLABS ? "Slabs" : "Slices";
+}
 
 using Points = std::vector<core::TransferFunction::Point>;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 namespace osgVolumizer {
@@ -20,8 +21,40 @@ Status BoxIndex::build(const std::vector<Box3d>& boxes)
                     static_cast<std::int64_t>(i)};
     }
     _boxes = boxes;
-    if (!buildLattice()) _cells.clear();
+    _nodes.clear();
+    if (buildLattice()) return {};
+    _cells.clear();
+    _order.resize(boxes.size());
+    std::iota(_order.begin(), _order.end(), 0u);
+    if (!boxes.empty()) buildTree(0, static_cast<std::uint32_t>(boxes.size()));
     return {};
+}
+
+std::uint32_t BoxIndex::buildTree(std::uint32_t begin, std::uint32_t end)
+{
+    const auto index = static_cast<std::uint32_t>(_nodes.size());
+    Node node;
+    node.begin = begin;
+    node.end = end;
+    for (std::uint32_t i = begin; i < end; ++i) {
+        node.bounds.expand(_boxes[_order[i]].min);
+        node.bounds.expand(_boxes[_order[i]].max);
+    }
+    _nodes.push_back(node);
+    if (end - begin <= 4) return index;
+    const glm::dvec3 size = node.bounds.size();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    std::nth_element(_order.begin() + begin, _order.begin() + middle, _order.begin() + end,
+                     [&](std::uint32_t a, std::uint32_t b) {
+                         const double ca = _boxes[a].center()[axis], cb = _boxes[b].center()[axis];
+                         return ca != cb ? ca < cb : a < b;
+                     });
+    const std::uint32_t left = buildTree(begin, middle);
+    const std::uint32_t right = buildTree(middle, end);
+    _nodes[index].left = left;
+    _nodes[index].right = right;
+    return index;
 }
 
 bool BoxIndex::buildLattice()

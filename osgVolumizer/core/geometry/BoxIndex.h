@@ -11,7 +11,7 @@ namespace osgVolumizer {
 namespace core {
 
 /// Finds the boxes that a range of space touches. Boxes on a regular or irregular lattice, such as
-/// the clip boxes of bricks, are found by their cell; any others by a test of each.
+/// the clip boxes of bricks, are found by their cell; any others in a tree of boxes.
 class OSGVOLUMIZER_CORE_EXPORT BoxIndex
 {
 public:
@@ -29,7 +29,7 @@ public:
         if (lattice())
             visitCells(min, max, f);
         else
-            visitAll(min, max, f);
+            visitTree(min, max, f);
     }
 
 private:
@@ -48,13 +48,29 @@ private:
                           int& last);
 
     template <class F>
-    void visitAll(const glm::dvec3& min, const glm::dvec3& max, F&& f) const
+    void visitTree(const glm::dvec3& min, const glm::dvec3& max, F&& f) const
     {
-        for (std::size_t i = 0; i < _boxes.size(); ++i) {
-            const Box3d& b = _boxes[i];
-            if (touches(min.x, max.x, b.min.x, b.max.x) &&
-                touches(min.y, max.y, b.min.y, b.max.y) && touches(min.z, max.z, b.min.z, b.max.z))
-                f(static_cast<int>(i), !inside(min, max, b));
+        std::uint32_t stack[2 * MAX_DEPTH + 2];
+        int top = 0;
+        if (!_nodes.empty()) stack[top++] = 0;
+        while (top > 0) {
+            const Node& node = _nodes[stack[--top]];
+            const Box3d& b = node.bounds;
+            if (min.x > b.max.x || min.y > b.max.y || min.z > b.max.z || max.x < b.min.x ||
+                max.y < b.min.y || max.z < b.min.z)
+                continue;
+            if (node.left != 0) {
+                stack[top++] = node.right;
+                stack[top++] = node.left;
+                continue;
+            }
+            for (std::uint32_t i = node.begin; i < node.end; ++i) {
+                const Box3d& box = _boxes[_order[i]];
+                if (touches(min.x, max.x, box.min.x, box.max.x) &&
+                    touches(min.y, max.y, box.min.y, box.max.y) &&
+                    touches(min.z, max.z, box.min.z, box.max.z))
+                    f(static_cast<int>(_order[i]), !inside(min, max, box));
+            }
         }
     }
     template <class F>
@@ -73,10 +89,21 @@ private:
                 }
     }
     bool buildLattice();
+    std::uint32_t buildTree(std::uint32_t begin, std::uint32_t end);
+
+    struct Node
+    {
+        Box3d bounds;
+        std::uint32_t begin = 0, end = 0;  ///< of _order
+        std::uint32_t left = 0, right = 0; ///< children; 0 in a leaf
+    };
+    static constexpr int MAX_DEPTH = 32; ///< halving 2^32 boxes
 
     std::vector<Box3d> _boxes;
     std::vector<double> _splits[3];
     std::vector<int> _cells; ///< box of each cell, or -1
+    std::vector<Node> _nodes;
+    std::vector<std::uint32_t> _order;
 };
 
 } // namespace core

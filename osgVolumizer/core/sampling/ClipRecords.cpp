@@ -1,5 +1,7 @@
 #include "ClipRecords.h"
 
+#include "Interpolate.h"
+
 #include <algorithm>
 
 namespace osgVolumizer {
@@ -13,8 +15,7 @@ int RecordPolygon::cross(std::size_t i, Value value, double limit, Finish finish
     double low = value(p), high = value(q);
     if (low > high) std::swap(p, q), std::swap(low, high);
     const double t = high > low ? std::min(1.0, std::max(0.0, (limit - low) / (high - low))) : 0.0;
-    for (std::size_t k = 0; k < _stride; ++k)
-        r[k] = p[k] + t * (q[k] - p[k]);
+    interpolate(p, q, t, _stride, r);
     finish(r);
     return static_cast<int>(_used) - 1;
 }
@@ -23,6 +24,7 @@ template <class Value, class Finish>
 void RecordPolygon::clip(Value value, double limit, bool above, Finish finish)
 {
     const std::size_t n = _corners.size();
+    if (n == 0) return;
     _heights.resize(n);
     bool anyAbove = false, anyBelow = false;
     for (std::size_t i = 0; i < n; ++i) {
@@ -76,16 +78,27 @@ void RecordPolygon::clipPlane(int field, const Plane& plane)
     const glm::dvec3& n = plane.normal;
     const bool above = n.x != 0.0 ? n.x > 0.0 : n.y != 0.0 ? n.y > 0.0 : n.z >= 0.0;
     const Plane upper = above ? plane : Plane{-n, -plane.offset};
-    clip([field, &upper](
-             const double* r) { return upper.distance({r[field], r[field + 1], r[field + 2]}); },
-         0.0, above, [](double*) {});
+    clip(
+        [field, &upper](const double* r) {
+            return upper.distance({r[field], r[field + 1], r[field + 2]});
+        },
+        0.0, above, [](double*) {});
 }
 
 void RecordPolygon::clipBox(int field, const Box3d& box)
 {
-    for (int a = 0; a < 3 && !_corners.empty(); ++a) {
-        clipField(field + a, box.min[a], true);
-        clipField(field + a, box.max[a], false);
+    Box3d extent;
+    for (const Corner& c : _corners) {
+        const double* r = at(c.record) + field;
+        extent.expand({r[0], r[1], r[2]});
+    }
+    for (int a = 0; a < 3; ++a) {
+        // What lies in a plane of the box as a whole belongs to the upper side. A polygon that ends
+        // at a plane is not cut by it, also where rounding has laid all of a remnant into the
+        // plane.
+        if (extent.max[a] < box.min[a] || extent.min[a] >= box.max[a]) _corners.clear();
+        if (extent.min[a] < box.min[a]) clipField(field + a, box.min[a], true);
+        if (extent.max[a] > box.max[a]) clipField(field + a, box.max[a], false);
     }
 }
 

@@ -1,6 +1,7 @@
-// One segment: the part of the pixel's ray in the clip box, the region's half-spaces and the slab, and in
-// front of the opaque scene. Midpoint rule with equal steps and exact ends, so second order in the step
-// whatever cuts the segment.
+// One segment: the part of the pixel's ray in the volume's region and the slab, and in front of the opaque
+// scene. Midpoint rule with equal steps and exact ends, so second order in the step whatever cuts
+// the segment. A brick takes the steps whose midpoints lie in its clip box: bricks add no ends, and however many
+// there are, all samples stay where they are.
 
 // What is left of the light when marching stops: the most that this may change any pixel.
 #define OPAQUE_ENOUGH 3e-5
@@ -8,7 +9,8 @@
 flat in vec2 slab; // nearest and farthest depth, from the reference depth
 out vec4 fragColor;
 
-uniform vec3 clipMin, clipMax;
+uniform vec3 regionMin, regionMax; // of the whole volume
+uniform vec3 clipMin, clipMax;     // of the brick
 #if PLANES > 0
 uniform vec4 planes[PLANES];
 #endif
@@ -24,16 +26,35 @@ uniform sampler2D layerDepth; // of the surfaces that split this segment
 uniform bool inFrontOfLayer;  // which part is drawn
 #endif
 
+#ifdef RANKED
+uniform sampler2D sortedFar, sortedNear; // window depths of the pixel's surfaces, far to near; -1: no more
+uniform int rank;                        // of the surface that ends the segment at its near end
+#endif
+
 #ifdef OPAQUE_DEPTH
-// Where the ray meets what left its depth in a buffer; far away where nothing did.
-float depthOnRay(sampler2D depths)
+// Where the ray has a window depth.
+float rayAt(float windowZ)
 {
-    float windowZ = textureLod(depths, gl_FragCoord.xy * depthTextureScale, 0.0).r;
-    if (windowZ >= 1.0) return 1e30;
     vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
     float z = 2.0 * windowZ - 1.0;
     return (z * dot(clipWOrigin, window) - dot(clipZOrigin, window)) /
            (dot(clipZDirection, window) - z * dot(clipWDirection, window));
+}
+
+// Where the ray meets what left its depth in a buffer; far away where nothing did.
+float depthOnRay(sampler2D depths)
+{
+    float windowZ = textureLod(depths, gl_FragCoord.xy * depthTextureScale, 0.0).r;
+    return windowZ < 1.0 ? rayAt(windowZ) : 1e30;
+}
+#endif
+
+#ifdef RANKED
+float sortedDepth(int i)
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    if (i < 4) return texelFetch(sortedFar, pixel, 0)[max(i, 0)];
+    return i < 8 ? texelFetch(sortedNear, pixel, 0)[i - 4] : -1.0;
 }
 #endif
 
@@ -50,11 +71,38 @@ void clipToPlane(vec4 plane, vec3 origin, vec3 direction, inout float tNear, ino
         tFar = tNear;
 }
 
+// The segment in a box; boxes are half-open, so that neighbours share no ray and leave none out.
+vec2 boxSegment(vec3 low, vec3 high, vec3 origin, vec3 direction)
+{
+    bvec3 parallel = equal(direction, vec3(0.0));
+    vec3 safe = mix(direction, vec3(1.0), parallel);
+    vec3 a = (low - origin) / safe;
+    vec3 b = (high - origin) / safe;
+    vec3 always = mix(vec3(1e30), vec3(-1e30), lessThanEqual(low, origin));
+    always = mix(vec3(1e30), always, lessThan(origin, high));
+    vec3 enter = mix(min(a, b), always, parallel);
+    vec3 leave = mix(max(a, b), -always, parallel);
+    return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
+}
+
 // Number of steps for a segment, such that their mean over all segments is the period.
 float stepsOf(float tNear, float tFar)
 {
     return clamp(floor((tFar - tNear) / stepDepth + 0.5), 1.0, maximumSteps);
 }
+
+#ifdef SHADING
+// The colour that the scene's lights make of a classified one.
+vec4 lit(vec4 c, vec3 origin, vec3 direction, float t)
+{
+    if (!(c.a > 0.0)) return c;
+    vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
+    vec3 directionEye = rayDirectionEye * window;
+    return vec4(shade(c.rgb, origin + t * direction, rayOriginEye * window + t * directionEye,
+                      -normalize(directionEye)),
+                c.a);
+}
+#endif
 
 #if defined(MAXIMUM) || defined(MINIMUM)
 #ifdef MAXIMUM
@@ -64,9 +112,11 @@ float stepsOf(float tNear, float tFar)
 #endif
 
 #ifdef RGBA
-// Highest or lowest premultiplied components on the segment, ends included.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
+// Highest or lowest premultiplied components on the brick's part of the segment, ends included.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
+    tNear = max(tNear, brick.x);
+    tFar = min(tFar, brick.y);
     float count = stepsOf(tNear, tFar);
     vec3 p = origin + direction * tNear, dp = direction * ((tFar - tNear) / count);
     vec4 texel = voxelAt(p);
@@ -78,10 +128,12 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
     return best;
 }
 #else
-// Highest or lowest value on the segment, ends included. Between samples the extreme is looked for about the best
+// Highest or lowest value on the brick's part of the segment, ends included. Between samples the extreme is looked for about the best
 // one, by halving: an interpolant has kinks, which would make plain sampling first order.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
+    tNear = max(tNear, brick.x);
+    tFar = min(tFar, brick.y);
     float count = stepsOf(tNear, tFar);
     vec3 p = origin + direction * tNear, dp = direction * ((tFar - tNear) / count);
     float best = voxelAt(p), at = 0.0;
@@ -104,16 +156,18 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
 #endif
 
 #elif defined(AVERAGE) || defined(SUM)
-// Integral of the value over the segment, and of 1.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
+// Integral of the value over the brick's steps, and of 1.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
     float count = stepsOf(tNear, tFar);
     float dt = (tFar - tNear) / count;
+    float first = max(0.0, ceil((brick.x - tNear) / dt - 0.5));
+    float last = min(count, ceil((brick.y - tNear) / dt - 0.5));
     vec3 p = origin + direction * (tNear + 0.5 * dt), dp = direction * dt;
     float sum = 0.0;
-    for (float i = 0.0; i < count; i += 1.0) sum += voxelAt(p + i * dp);
+    for (float i = first; i < last; i += 1.0) sum += voxelAt(p + i * dp);
     float stepUnits = dt * length(frameToUnits * direction);
-    return vec4(sum * stepUnits, count * stepUnits, 0.0, 0.0);
+    return vec4(sum * stepUnits, max(last - first, 0.0) * stepUnits, 0.0, 0.0);
 }
 
 #elif defined(ISOSURFACE)
@@ -141,8 +195,10 @@ float rootBetween(vec3 origin, vec3 direction, float t0, float f0, float t1, flo
 }
 
 // The first crossing of the iso-value, opaque.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
+    tNear = max(tNear, brick.x);
+    tFar = min(tFar, brick.y);
     float count = stepsOf(tNear, tFar);
     float dt = (tFar - tNear) / count;
     float before = overIso(origin + direction * tNear);
@@ -153,10 +209,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
             t = rootBetween(origin, direction, t - dt, before, t, after);
             vec3 color = classifyTexel(isoTexel).rgb;
 #ifdef SHADING
-            vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
-            vec3 directionEye = rayDirectionEye * window;
-            color = shade(color, origin + direction * t, rayOriginEye * window + directionEye * t,
-                          -normalize(directionEye));
+            color = lit(vec4(color, 1.0), origin, direction, t).rgb;
 #endif
             return vec4(color, 1.0);
         }
@@ -165,37 +218,55 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
     return vec4(0.0);
 }
 
+#elif defined(PREINTEGRATED)
+// Light of the part of [tNear, tFar] in the brick, front to back: premultiplied colour, opacity. The ends of
+// steps are where the table is asked, so steps are cut at the brick's ends.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    float dt = (tFar - tNear) / stepsOf(tNear, tFar);
+    float unitsPerDepth = length(frameToUnits * direction);
+    float t = max(tNear, brick.x), end = min(tFar, brick.y);
+    float step = floor((t - tNear) / dt);
+    vec3 color = vec3(0.0);
+    float transmittance = 1.0;
+    float entry = tableEntry(origin + t * direction);
+    vec4 integral = tableIntegral(entry);
+    for (float i = 0.0; i < maximumSteps + 2.0 && t < end; i += 1.0) {
+        step += 1.0;
+        float next = max(t, min(tNear + step * dt, end));
+        float nextEntry = tableEntry(origin + next * direction);
+        vec4 nextIntegral = tableIntegral(nextEntry);
+        vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
+#ifdef SHADING
+        c = lit(c, origin, direction, 0.5 * (t + next));
+#endif
+        float through = exp2(-c.a * (next - t) * unitsPerDepth);
+        color += transmittance * (1.0 - through) * c.rgb;
+        transmittance *= through;
+        t = next;
+        entry = nextEntry;
+        integral = nextIntegral;
+        if (transmittance < OPAQUE_ENOUGH) break;
+    }
+    return vec4(color, 1.0 - transmittance);
+}
 #else
-// Light of the segment [tNear, tFar], front to back: premultiplied colour, opacity.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar)
+// Light of the brick's steps, front to back: premultiplied colour, opacity.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
     float count = stepsOf(tNear, tFar);
     float dt = (tFar - tNear) / count;
-    vec3 p = origin + direction * (tNear + 0.5 * dt), dp = direction * dt;
+    float first = max(0.0, ceil((brick.x - tNear) / dt - 0.5));
+    float last = min(count, ceil((brick.y - tNear) / dt - 0.5)); // not one of the brick's
+    vec3 dp = direction * dt;
+    vec3 p = origin + direction * (tNear + 0.5 * dt);
     float stepUnits = dt * length(frameToUnits * direction);
     vec3 color = vec3(0.0);
     float transmittance = 1.0;
-#ifdef SHADING
-    vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
-    vec3 directionEye = rayDirectionEye * window, toEye = -normalize(directionEye);
-    vec3 eye = rayOriginEye * window + directionEye * (tNear + 0.5 * dt);
-#endif
-#ifdef PREINTEGRATED
-    float entry = tableEntry(p - 0.5 * dp);
-    vec4 integral = tableIntegral(entry);
-#endif
-    for (float i = 0.0; i < count; i += 1.0) {
-#ifdef PREINTEGRATED
-        float nextEntry = tableEntry(p + (i + 0.5) * dp);
-        vec4 nextIntegral = tableIntegral(nextEntry);
-        vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
-        entry = nextEntry;
-        integral = nextIntegral;
-#else
+    for (float i = first; i < last; i += 1.0) {
         vec4 c = classify(p + i * dp);
-#endif
 #ifdef SHADING
-        if (c.a > 0.0) c.rgb = shade(c.rgb, p + i * dp, eye + i * dt * directionEye, toEye);
+        c = lit(c, origin, direction, tNear + (i + 0.5) * dt);
 #endif
         float through = exp2(-c.a * stepUnits);
         color += transmittance * (1.0 - through) * c.rgb;
@@ -210,12 +281,10 @@ void main()
 {
     vec3 origin, direction;
     pixelRay(origin, direction);
-    vec3 safe = mix(direction, vec3(1e-30), equal(direction, vec3(0.0)));
-    vec3 a = (clipMin - origin) / safe;
-    vec3 b = (clipMax - origin) / safe;
-    vec3 enter = min(a, b), leave = max(a, b);
-    float tNear = max(max(enter.x, enter.y), max(enter.z, slab.x));
-    float tFar = min(min(leave.x, leave.y), min(leave.z, slab.y));
+    vec2 region = boxSegment(regionMin, regionMax, origin, direction);
+    vec2 brick = boxSegment(clipMin, clipMax, origin, direction);
+    float tNear = max(region.x, slab.x);
+    float tFar = min(region.y, slab.y);
 #if PLANES > 0
     for (int i = 0; i < PLANES; ++i) clipToPlane(planes[i], origin, direction, tNear, tFar);
 #endif
@@ -229,7 +298,15 @@ void main()
     else if (inFrontOfLayer)
         tFar = tLayer < 1e29 ? min(tFar, tLayer) : tNear;
 #endif
-    if (!(tNear < tFar)) discard;
+#ifdef RANKED
+    float nearer = sortedDepth(rank), farther = sortedDepth(rank - 1);
+    if (rank > 0) {
+        if (farther < 0.0) discard;
+        tFar = min(tFar, rayAt(farther));
+    }
+    if (nearer >= 0.0) tNear = max(tNear, rayAt(nearer));
+#endif
+    if (!(max(tNear, brick.x) < min(tFar, brick.y))) discard;
 
-    fragColor = march(origin, direction, tNear, tFar);
+    fragColor = march(origin, direction, tNear, tFar, brick);
 }

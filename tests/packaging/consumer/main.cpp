@@ -21,7 +21,7 @@ int fail(const std::string& text)
 
 int main()
 {
-    osgDB::Registry::instance()->setLibraryFilePathList(std::string(PLUGIN_ROOT));
+    osgDB::Registry::instance()->getLibraryFilePathList().push_front(PLUGIN_ROOT);
 
     osg::ref_ptr<osgVolumizer::MemoryVoxelSource> source = new osgVolumizer::MemoryVoxelSource;
     osgVolumizer::VoxelSource::Description description;

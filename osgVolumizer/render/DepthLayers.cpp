@@ -1,0 +1,202 @@
+#include "DepthLayers.h"
+
+#include "ScissorScope.h"
+#include "VolumeProgram.h"
+
+#include <osg/ColorMask>
+#include <osg/Depth>
+#include <osg/Program>
+#include <osg/Stencil>
+
+#include <array>
+#include <string>
+
+namespace osgVolumizer {
+namespace render {
+
+std::string shaderSource(const std::string& name); // generated from shaders/*.glsl
+
+namespace {
+
+using osg::StateAttribute;
+constexpr unsigned FORCE = StateAttribute::ON | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
+constexpr GLenum WAIT_FOR_QUERY = 0x8E13; // GL_QUERY_WAIT
+
+osg::ref_ptr<osg::Program> screenProgram(const char* fragment)
+{
+    osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->setName(std::string("osgVolumizer ") + fragment);
+    const std::string version = "#version 330\n";
+    program->addShader(
+        new osg::Shader(osg::Shader::VERTEX, version + shaderSource("screen.vert.glsl")));
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, version + shaderSource(fragment)));
+    return program;
+}
+
+// Writes either colour or depth.
+osg::ref_ptr<osg::StateSet> screenState(const char* fragment, bool writeDepth)
+{
+    osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+    set->setAttributeAndModes(screenProgram(fragment), FORCE);
+    set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, writeDepth), FORCE);
+    const unsigned off = StateAttribute::OFF | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
+    for (GLenum mode : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_ALPHA_TEST}) set->setMode(mode, off);
+    const bool color = !writeDepth;
+    set->setAttribute(new osg::ColorMask(color, color, color, color), FORCE);
+    for (int k = 0; k < LayerLeaf::LAYER_COUNT; ++k)
+        set->addUniform(new osg::Uniform(("layer" + std::to_string(k)).c_str(),
+                                         int(UNIT_FIRST_LAYER) + k));
+    set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
+    set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
+    return set;
+}
+
+// One triangle over the whole viewport.
+void drawScreen(osg::State& state, ContextResources& resources, const glm::ivec4& area)
+{
+    static const std::array<float, 6> corners = {-1.0f, -1.0f, 3.0f, -1.0f, -1.0f, 3.0f};
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const ScissorScope scissor;
+    if (!scissor.set(area)) return;
+    state.lazyDisablingOfVertexAttributes();
+    state.applyDisablingOfVertexAttributes();
+    resources.vertices.stream(gl, GL_ARRAY_BUFFER_ARB, corners.data(), sizeof(corners));
+    gl.glEnableVertexAttribArray(0);
+    gl.glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    gl.glDisableVertexAttribArray(0);
+    gl.glBindBuffer(GL_ARRAY_BUFFER_ARB, 0);
+    state.unbindVertexBufferObject();
+}
+
+void setUniform(osg::State& state, const char* name, int value)
+{
+    if (const auto* program = state.getLastAppliedProgramObject())
+        state.get<osg::GLExtensions>()->glUniform1i(
+            program->getUniformLocation(osg::Uniform::getNameID(name)), value);
+}
+
+void bindFramebuffer(osg::State& state, GLuint name)
+{
+    state.get<osg::GLExtensions>()->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, name);
+}
+
+} // namespace
+
+LayerLeaf::LayerLeaf(Accumulation* accumulation, Step step, int index, const glm::ivec4& area)
+    : _accumulation(accumulation), _step(step), _index(index), _area(area)
+{
+    setSupportsDisplayList(false);
+    setUseDisplayList(false);
+    setUseVertexBufferObjects(false);
+    setDataVariance(osg::Object::STATIC);
+}
+
+osg::Object* LayerLeaf::cloneType() const
+{
+    return new LayerLeaf(nullptr, SORT, 0, glm::ivec4(0));
+}
+
+osg::ref_ptr<osg::StateSet> LayerLeaf::stateSet(Step step)
+{
+    static const osg::ref_ptr<osg::StateSet> sort = screenState("sort.frag.glsl", false);
+    static const osg::ref_ptr<osg::StateSet> fill = screenState("fill.frag.glsl", true);
+    static const osg::ref_ptr<osg::StateSet> clear = []() {
+        osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+        set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE);
+        set->setAttribute(new osg::Stencil, FORCE); // its write mask is all ones
+        return set;
+    }();
+    return step == SORT ? sort : step == BEGIN_RANK || step == BEGIN_REST ? fill : clear;
+}
+
+void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
+{
+    if (!_accumulation) return;
+    osg::State& state = *renderInfo.getState();
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    const LayerBuffers& layers = _accumulation->layerBuffers(state);
+    const auto clear = [this](GLbitfield what) {
+        const ScissorScope scissor;
+        if (scissor.set(_area)) glClear(what);
+    };
+    switch (_step) {
+    case BEGIN_CAPTURE:
+        bindFramebuffer(state, layers.layerFramebuffers[_index]);
+        glClearStencil(0);
+        clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+        if (_index > 0) gl.glBeginConditionalRender(layers.queries[_index - 1], WAIT_FOR_QUERY);
+        gl.glBeginQuery(GL_SAMPLES_PASSED_ARB, layers.queries[_index]);
+        break;
+    case END_CAPTURE:
+        gl.glEndQuery(GL_SAMPLES_PASSED_ARB);
+        if (_index > 0) gl.glEndConditionalRender();
+        break;
+    case SORT:
+        bindFramebuffer(state, layers.sortedFramebuffer);
+        for (int k = 0; k < LAYER_COUNT; ++k)
+            state.applyTextureAttribute(UNIT_FIRST_LAYER + static_cast<unsigned>(k),
+                                        layers.layers[k]);
+        state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, resources->accumulation.opaqueDepth);
+        drawScreen(state, *resources, _area);
+        bindFramebuffer(state, resources->accumulation.framebuffer);
+        break;
+    case BEGIN_SEGMENT:
+        bindFramebuffer(state, resources->accumulation.framebuffer);
+        if (_index > 0) gl.glBeginConditionalRender(layers.queries[_index - 1], WAIT_FOR_QUERY);
+        break;
+    case BEGIN_RANK:
+    case BEGIN_REST:
+        bindFramebuffer(state, layers.rankFramebuffer);
+        glClearStencil(0);
+        if (_step == BEGIN_REST) clear(GL_STENCIL_BUFFER_BIT);
+        gl.glBeginConditionalRender(layers.queries[_index], WAIT_FOR_QUERY);
+        state.applyTextureAttribute(UNIT_SORTED_FAR, layers.sorted[0]);
+        state.applyTextureAttribute(UNIT_SORTED_NEAR, layers.sorted[1]);
+        state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, resources->accumulation.opaqueDepth);
+        setUniform(state, "rank", _step == BEGIN_REST ? -1 : _index);
+        drawScreen(state, *resources, _area);
+        break;
+    case END_SEGMENT:
+        if (_index > 0) gl.glEndConditionalRender();
+        break;
+    case END_RANK:
+    case END_REST:
+        gl.glEndConditionalRender();
+        bindFramebuffer(state, resources->accumulation.framebuffer);
+        break;
+    }
+    for (unsigned unit = UNIT_OPAQUE_DEPTH; unit < UNIT_FIRST_LAYER + LAYER_COUNT; ++unit)
+        state.haveAppliedTextureAttribute(unit, StateAttribute::TEXTURE);
+}
+
+osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index,
+                                              const osg::Depth* effectiveDepth)
+{
+    osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+    const double zNear = effectiveDepth ? effectiveDepth->getZNear() : 0.0;
+    const double zFar = effectiveDepth ? effectiveDepth->getZFar() : 1.0;
+    const auto stencil = [&set](osg::Stencil::Function function, int reference) {
+        osg::ref_ptr<osg::Stencil> s = new osg::Stencil;
+        s->setFunction(function, reference, 0xff);
+        s->setOperation(osg::Stencil::INCR, osg::Stencil::INCR, osg::Stencil::INCR);
+        set->setAttributeAndModes(s, FORCE);
+    };
+    osg::Depth::Function function = osg::Depth::EQUAL;
+    if (step == LayerLeaf::BEGIN_CAPTURE) {
+        function = osg::Depth::ALWAYS;
+        stencil(osg::Stencil::EQUAL, index);
+        set->setAttribute(new osg::ColorMask(false, false, false, false), FORCE);
+    } else if (step == LayerLeaf::BEGIN_REST) {
+        function = osg::Depth::LESS;
+        stencil(osg::Stencil::LEQUAL, LayerLeaf::LAYER_COUNT); // passes where the count has come this far
+    }
+    set->setAttributeAndModes(
+        new osg::Depth(function, zNear, zFar, step == LayerLeaf::BEGIN_CAPTURE), FORCE);
+    return set;
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,91 @@
+#include "Renderer.h"
+
+#include <osgVolumizer/VolumeAppearance.h>
+#include <osgVolumizer/VolumeGeometry.h>
+
+namespace osgVolumizer {
+namespace bench {
+
+namespace {
+
+/// osgVolumizer as an application uses it: a whole frame of osgViewer, update to swap.
+class LibraryRenderer : public Renderer
+{
+public:
+    LibraryRenderer(bool slabs, int brickSize) : _slabs(slabs), _brickSize(brickSize) {}
+
+    std::string name() const override
+    {
+        const std::string name = _slabs ? "osgVolumizer slabs" : "osgVolumizer slices";
+        return _brickSize ? name + " bricks " + std::to_string(_brickSize) : name;
+    }
+
+    Status open(const ChartScene& scene) override
+    {
+        VoxelSource::Description description;
+        description.size = scene.size;
+        description.type = scene.type;
+        description.origin = scene.origin;
+        _data = scene.voxels;
+        osg::ref_ptr<MemoryVoxelSource> source = new MemoryVoxelSource;
+        Status status = source->setExternal(description, _data.data());
+        if (!status.ok()) return status;
+        osg::ref_ptr<Voxels> voxels = new Voxels(source);
+        status = voxels->setRange(osg::Vec2d(scene.range.x, scene.range.y));
+        if (status.ok() && _brickSize) status = voxels->setBrickSize(glm::ivec3(_brickSize));
+        if (!status.ok()) return status;
+        osg::ref_ptr<LookupTable> table = new LookupTable;
+        status = table->setPoints(scene.table, LookupTable::RANGE_FRACTION);
+        if (!status.ok()) return status;
+
+        _appearance = new VolumeAppearance;
+        _appearance->setVoxels(voxels);
+        _appearance->setLookupTable(table);
+        _appearance->setTechnique(_slabs ? VolumeAppearance::SLABS : VolumeAppearance::SLICES);
+        _appearance->addChild(VolumeGeometry::createBox(*voxels));
+        if (scene.shaded) return Status(ErrorCode::NOT_SUPPORTED, "has no shading yet");
+        support::RenderOptions options = scene.view;
+        options.light = scene.shaded;
+        _renderer = std::make_unique<support::SceneRenderer>(_appearance, options);
+        _renderer->viewer().getCamera()->getStats()->collectStats("rendering", true);
+        _renderer->viewer().getViewerStats()->collectStats("update", true);
+        return _renderer->status();
+    }
+    Status setStep(double stepVoxel) override
+    {
+        return _appearance->setSamplingPeriod(osg::Vec3d(stepVoxel, stepVoxel, stepVoxel));
+    }
+    void frame() override { _renderer->viewer().frame(); }
+    support::FloatImage picture() override { return _renderer->render(); }
+    std::map<std::string, double> split() override
+    {
+        std::map<std::string, double> result = _renderer->counters();
+        osgViewer::Viewer& viewer = _renderer->viewer();
+        const unsigned frame = viewer.getFrameStamp()->getFrameNumber();
+        const auto add = [&](osg::Stats* stats, const std::string& key) {
+            double seconds = 0.0;
+            if (stats->getAttribute(frame, key, seconds)) result[key + ", ms"] = 1e3 * seconds;
+        };
+        add(viewer.getViewerStats(), "Update traversal time taken");
+        add(viewer.getCamera()->getStats(), "Cull traversal time taken");
+        add(viewer.getCamera()->getStats(), "Draw traversal time taken");
+        return result;
+    }
+
+private:
+    bool _slabs;
+    int _brickSize;
+    std::vector<unsigned char> _data;
+    osg::ref_ptr<VolumeAppearance> _appearance;
+    std::unique_ptr<support::SceneRenderer> _renderer;
+};
+
+} // namespace
+
+RendererPtr makeLibraryRenderer(bool slabs, int brickSize)
+{
+    return std::make_unique<LibraryRenderer>(slabs, brickSize);
+}
+
+} // namespace bench
+} // namespace osgVolumizer

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "Scenes.h"
+
+#include <map>
+#include <memory>
+
+namespace osgVolumizer {
+namespace bench {
+
+/// One way to draw a ChartScene. All draw to a 32-bit float target unless stated, into contexts of
+/// their own, and nothing of what comes before frame() is timed.
+class Renderer
+{
+public:
+    virtual ~Renderer() = default;
+
+    /// Identifies the curve.
+    virtual std::string name() const = 0;
+    /// Makes everything that does not depend on the step. Not ok: this renderer cannot draw it.
+    virtual Status open(const ChartScene& scene) = 0;
+    /// Distance between samples along the view, in voxels.
+    virtual Status setStep(double stepVoxel) = 0;
+    /// Draws one frame, to the end of glFinish.
+    virtual void frame() = 0;
+    /// Reads back what the last frame drew: premultiplied, bottom row first.
+    virtual support::FloatImage picture() = 0;
+    /// Where the time of the last frame went, milliseconds by name; empty where that is not known.
+    virtual std::map<std::string, double> split() { return {}; }
+};
+
+using RendererPtr = std::unique_ptr<Renderer>;
+
+/// Bricks of at most `brickSize` samples per axis; 0: the library's default, which is one brick
+/// for all scenes here.
+RendererPtr makeLibraryRenderer(bool slabs, int brickSize = 0);
+/// A fragment shader that marches through the box in one pass, without a scene graph: the
+/// practical limit. `defines` are lines of march.frag.glsl's options, see there.
+RendererPtr makeBareRenderer(const std::string& defines = "");
+
+enum class OsgVolumeTechnique { FIXED_FUNCTION, RAY_TRACED, MULTIPASS };
+RendererPtr makeOsgVolumeRenderer(OsgVolumeTechnique technique);
+
+/// By the name of the command line; null for an unknown one.
+RendererPtr makeRenderer(const std::string& name);
+
+} // namespace bench
+} // namespace osgVolumizer
