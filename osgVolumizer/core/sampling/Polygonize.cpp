@@ -206,8 +206,8 @@ Status Polygonizer::Private::measure()
             farthest = std::max(farthest, d);
         }
     };
-    // The extremes lie in few blocks: those that reach farthest come first, the others are looked into
-    // only if they may reach farther still.
+    // The extremes lie in few blocks: those that reach farthest come first, the others are looked
+    // into only if they may reach farther still.
     struct Range
     {
         double nearest, farthest;

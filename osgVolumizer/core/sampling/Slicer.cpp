@@ -17,7 +17,8 @@ namespace {
 constexpr std::size_t MAX_BINS = std::size_t(1) << 24;
 constexpr std::size_t BLOCKS_PER_CHUNK = 8; ///< fewer are not worth a task
 
-/// What one face of each case adds to its bin: 4 indices where two vertices are on either side, else
+/// What one face of each case adds to its bin: 4 indices where two vertices are on either side,
+/// else
 /// 3. The cases without a face do not occur.
 constexpr std::array<Slicer::Count, 16> FACE_COUNTS = [] {
     std::array<Slicer::Count, 16> counts{};
@@ -216,8 +217,8 @@ struct Target
     std::uint32_t* faceOffsets;
 };
 
-/// Writes the faces of one block. All that the loop needs is in local variables, since the compiler has
-/// to expect that its stores change anything else.
+/// Writes the faces of one block. All that the loop needs is in local variables, since the compiler
+/// has to expect that its stores change anything else.
 template <bool Bricks>
 void emitEntries(const SlicePlan& plan, Slicer::Chunk& chunk, const TetraBlocks::Block& block,
                  std::size_t begin, std::size_t end, Target target)
@@ -268,7 +269,8 @@ void Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& ou
                     out.faces.vertices.data() + chunk.vertexCount * (blocks.recordSize() - 1));
         chunk.vertexCount += chunk.pointCount;
 
-        if (blocks.places.empty()) emitEntries<false>(plan, chunk, block, i, end, target);
+        if (blocks.places.empty())
+            emitEntries<false>(plan, chunk, block, i, end, target);
         else
             emitEntries<true>(plan, chunk, block, i, end, target);
         i = end;

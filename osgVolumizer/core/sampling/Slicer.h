@@ -57,8 +57,8 @@ public:
                plan.gradient.z * (p[2] - plan.corner.z);
     }
 
-    /// Bounds of the depths in a block, by one box test; a little wider than rounding needs. All depths
-    /// there may be, where they are not those of planes.
+    /// Bounds of the depths in a block, by one box test; a little wider than rounding needs. All
+    /// depths there may be, where they are not those of planes.
     static void depthRange(const SlicePlan& plan, const TetraBlocks::Block& block, double& nearest,
                            double& farthest);
 
