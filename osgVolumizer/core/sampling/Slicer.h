@@ -45,7 +45,10 @@ struct SlicePlan
 class Slicer
 {
 public:
-    /// Fills faces, ranges and faceSpacings of `out`; leaves it alone on failure (TOO_LARGE).
+    /// TOO_LARGE for more pairs of surface and brick than there is room for.
+    static Status checkSize(const SlicePlan& plan);
+    /// Expects checkSize(). Fills faces, ranges and faceSpacings of `out`; leaves it alone on
+    /// failure (TOO_LARGE).
     Status run(const SlicePlan& plan, Executor* executor, PolygonizedFaces& out);
 
     /// Depth of a vertex, from its record.
