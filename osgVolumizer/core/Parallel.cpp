@@ -44,7 +44,8 @@ ThreadPool::ThreadPool(int threads) : _private(new Private)
 {
     const int cores = static_cast<int>(std::thread::hardware_concurrency());
     const int n = threads > 0 ? threads : std::max(1, cores);
-    for (int i = 1; i < n; ++i) _private->threads.emplace_back([this] { _private->loop(); });
+    for (int i = 1; i < n; ++i)
+        _private->threads.emplace_back([this] { _private->loop(); });
 }
 
 ThreadPool::~ThreadPool()
@@ -54,10 +55,14 @@ ThreadPool::~ThreadPool()
         _private->stop = true;
     }
     _private->wake.notify_all();
-    for (std::thread& t : _private->threads) t.join();
+    for (std::thread& t : _private->threads)
+        t.join();
 }
 
-int ThreadPool::concurrency() const { return static_cast<int>(_private->threads.size()) + 1; }
+int ThreadPool::concurrency() const
+{
+    return static_cast<int>(_private->threads.size()) + 1;
+}
 
 void ThreadPool::run(int count, const std::function<void(int)>& task)
 {

@@ -16,8 +16,8 @@ public:
     virtual ~Executor() = default;
     /// How many tasks can run at the same time, >= 1.
     virtual int concurrency() const = 0;
-    /// Calls task(0) ... task(count - 1), in any order, and returns when all have returned. Tasks do
-    /// not throw. Called by one thread at a time.
+    /// Calls task(0) ... task(count - 1), in any order, and returns when all have returned. Tasks
+    /// do not throw. Called by one thread at a time.
     virtual void run(int count, const std::function<void(int)>& task) = 0;
 };
 

@@ -140,7 +140,7 @@ void makeLayerTextures(osg::State& state, AccumulationBuffers& buffers)
     for (int k = 0; k < LayerBuffers::COUNT; ++k) {
         layers.layers[k] = makeDepthStencil(w, h);
         gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.layerFramebuffers[k]);
-        attach(GL_DEPTH_STENCIL_ATTACHMENT_EXT, *layers.layers[k]);
+        attach(GL_DEPTH_STENCIL_ATTACHMENT, *layers.layers[k]);
         glDrawBuffer(GL_NONE);
         glReadBuffer(GL_NONE);
     }
@@ -154,7 +154,7 @@ void makeLayerTextures(osg::State& state, AccumulationBuffers& buffers)
     layers.rankDepth = makeDepthStencil(w, h);
     layers.rankColor = nullptr;
     gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.rankFramebuffer);
-    attach(GL_DEPTH_STENCIL_ATTACHMENT_EXT, *layers.rankDepth);
+    attach(GL_DEPTH_STENCIL_ATTACHMENT, *layers.rankDepth);
 }
 
 } // namespace

@@ -33,6 +33,7 @@ osg::ref_ptr<osg::Program> screenProgram(const char* fragment)
     return program;
 }
 
+// Writes either colour or depth.
 osg::ref_ptr<osg::StateSet> screenState(const char* fragment, bool writeDepth)
 {
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
@@ -40,7 +41,8 @@ osg::ref_ptr<osg::StateSet> screenState(const char* fragment, bool writeDepth)
     set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, writeDepth), FORCE);
     const unsigned off = StateAttribute::OFF | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
     for (GLenum mode : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_ALPHA_TEST}) set->setMode(mode, off);
-    set->setAttribute(new osg::ColorMask(true, true, true, true), FORCE);
+    const bool color = !writeDepth;
+    set->setAttribute(new osg::ColorMask(color, color, color, color), FORCE);
     for (int k = 0; k < LayerLeaf::LAYER_COUNT; ++k)
         set->addUniform(new osg::Uniform(("layer" + std::to_string(k)).c_str(),
                                          int(UNIT_FIRST_LAYER) + k));

@@ -1,5 +1,5 @@
-#include "TestGeometry.h"
 #include "osgVolumizer/core/sampling/FaceCache.h"
+#include "TestGeometry.h"
 
 #include <gtest/gtest.h>
 
@@ -81,7 +81,8 @@ TEST(FaceCache, SlackIsMeasuredFromWhereTheFacesWereMade)
     FaceCache cache;
     const auto set = box();
     const SamplingParameters p;
-    for (int i = 0; i <= 20; ++i) cache.faces(1, set, BOXES, turned(0.01 * i), p, 0.0501);
+    for (int i = 0; i <= 20; ++i)
+        cache.faces(1, set, BOXES, turned(0.01 * i), p, 0.0501);
     EXPECT_EQ(cache.polygonizations(), 4u); // at 0, 6, 12, 18 hundredths
     EXPECT_EQ(cache.faces(1, set, BOXES, turned(0.0), p, -1.0).status.code,
               ErrorCode::VALUE_INVALID);
@@ -93,7 +94,8 @@ TEST(FaceCache, VoxelAxesNeedNoNewFacesWhileTheAxisHolds)
     const auto set = box();
     SamplingParameters p;
     p.mode = SamplingMode::AXIS_ALIGNED;
-    for (int i = 0; i < 10; ++i) cache.faces(1, set, BOXES, turned(0.01 * i), p);
+    for (int i = 0; i < 10; ++i)
+        cache.faces(1, set, BOXES, turned(0.01 * i), p);
     EXPECT_EQ(cache.polygonizations(), 1u);
     View inside; // the order of the planes depends on the eye
     inside.projection = glm::perspective(1.0, 1.0, 0.1, 100.0);
@@ -125,7 +127,8 @@ TEST(FaceCache, HeldFacesAreNeverOverwritten)
         held.push_back(*cache.faces(1, set, BOXES, turned(0.1 * i), SamplingParameters()));
         copies.push_back(held.back()->faces.vertices);
     }
-    for (std::size_t i = 0; i < held.size(); ++i) EXPECT_EQ(held[i]->faces.vertices, copies[i]);
+    for (std::size_t i = 0; i < held.size(); ++i)
+        EXPECT_EQ(held[i]->faces.vertices, copies[i]);
 }
 
 TEST(FaceCache, ManyThreadsAndViews)
@@ -136,13 +139,14 @@ TEST(FaceCache, ManyThreadsAndViews)
     for (unsigned t = 0; t < 4; ++t)
         threads.emplace_back([&, t] {
             for (int i = 0; i < 50; ++i) {
-                const auto f = cache.faces(t % 2, set, BOXES, turned(0.001 * (i / 10)),
-                                           SamplingParameters());
+                const auto f =
+                    cache.faces(t % 2, set, BOXES, turned(0.001 * (i / 10)), SamplingParameters());
                 ASSERT_TRUE(f.ok());
                 ASSERT_GT((*f)->faces.faceCount(), 0u);
             }
         });
-    for (std::thread& t : threads) t.join();
+    for (std::thread& t : threads)
+        t.join();
     EXPECT_EQ(cache.polygonizations() + cache.reuses(), 200u);
     EXPECT_EQ(cache.viewCount(), 2u);
 }

@@ -39,7 +39,8 @@ float valueOf(std::uint32_t bits)
     return v;
 }
 
-/// n^3 cells in [0, n]^3; the inner vertices are moved (by 0.16 no cell can turn inside out), some tetrahedra turned round, and all shuffled.
+/// n^3 cells in [0, n]^3; the inner vertices are moved (by 0.16 no cell can turn inside out), some
+/// tetrahedra turned round, and all shuffled.
 TetraSet jitteredGrid(int n, std::mt19937& random, double amount)
 {
     TetraSet set = makeGrid(n, n);
@@ -47,7 +48,8 @@ TetraSet jitteredGrid(int n, std::mt19937& random, double amount)
     for (std::size_t i = 0; i < set.vertices.size(); ++i) {
         glm::dvec3 p = set.vertices.position(i);
         for (int a = 0; a < 3; ++a)
-            if (p[a] > 0.0 && p[a] < n) p[a] += random() % 4 ? u(random) : 0.0; // some stay on planes
+            if (p[a] > 0.0 && p[a] < n)
+                p[a] += random() % 4 ? u(random) : 0.0; // some stay on planes
         set.vertices.setPosition(i, p);
     }
     std::vector<std::array<TetraSet::Index, 4>> tetra(set.tetraCount());
@@ -95,12 +97,14 @@ void expectSound(const PolygonizedFaces& out)
         ASSERT_EQ(out.faces.faceOffsets[face], index);
     }
     ASSERT_EQ(face, out.faces.faceCount());
-    for (const std::uint32_t i : out.faces.indices) ASSERT_LT(i, out.faces.vertexCount());
-    for (const float v : out.faces.vertices) ASSERT_TRUE(std::isfinite(v));
+    for (const std::uint32_t i : out.faces.indices)
+        ASSERT_LT(i, out.faces.vertexCount());
+    for (const float v : out.faces.vertices)
+        ASSERT_TRUE(std::isfinite(v));
 }
 
-/// In every surface, over all bricks, each edge is matched by its opposite, except on the hull [0, size]:
-/// nothing missing, nothing double, no crack, one orientation.
+/// In every surface, over all bricks, each edge is matched by its opposite, except on the hull [0,
+/// size]: nothing missing, nothing double, no crack, one orientation.
 void expectWatertight(const PolygonizedFaces& out, const glm::dvec3& size)
 {
     for (int s = 0; s < out.surfaceCount; ++s) {
@@ -108,10 +112,12 @@ void expectWatertight(const PolygonizedFaces& out, const glm::dvec3& size)
         for (int b = 0; b < out.brickCount; ++b) {
             const FaceRange& r = out.range(s, b);
             for (std::uint32_t f = r.firstFace; f < r.firstFace + r.faceCount; ++f) {
-                const std::uint32_t first = out.faces.faceOffsets[f], end = out.faces.faceOffsets[f + 1];
+                const std::uint32_t first = out.faces.faceOffsets[f],
+                                    end = out.faces.faceOffsets[f + 1];
                 for (std::uint32_t i = first; i < end; ++i) {
                     const Bits p = bitsOf(out.faces, out.faces.indices[i]);
-                    const Bits q = bitsOf(out.faces, out.faces.indices[i + 1 == end ? first : i + 1]);
+                    const Bits q =
+                        bitsOf(out.faces, out.faces.indices[i + 1 == end ? first : i + 1]);
                     if (p < q) ++edges[{p, q}];
                     if (q < p) --edges[{q, p}];
                 }
@@ -156,7 +162,8 @@ std::vector<std::vector<std::vector<Bits>>> canonical(const PolygonizedFaces& ou
             for (std::uint32_t i = out.faces.faceOffsets[f]; i < out.faces.faceOffsets[f + 1]; ++i)
                 face.push_back(bitsOf(out.faces, out.faces.indices[i]));
             face.erase(std::unique(face.begin(), face.end()), face.end());
-            while (face.size() > 1 && face.front() == face.back()) face.pop_back();
+            while (face.size() > 1 && face.front() == face.back())
+                face.pop_back();
             std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
             bins.back().push_back(face);
         }
@@ -218,7 +225,8 @@ TEST(PolygonizeProperty, PlanesThroughVerticesEdgesAndFaces)
             expectWatertight(out, glm::dvec3(4.0));
             for (int s = 0; s < out.surfaceCount; ++s) {
                 double a = 0.0;
-                for (int b = 0; b < 8; ++b) a += area(out.faces, out.range(s, b));
+                for (int b = 0; b < 8; ++b)
+                    a += area(out.faces, out.range(s, b));
                 EXPECT_NEAR(a, 16.0, 1e-5); // each plane is covered exactly once
             }
         }
@@ -232,11 +240,12 @@ TEST(PolygonizeProperty, IndependentOfOrderAndOrientation)
     std::vector<std::array<TetraSet::Index, 4>> tetra(set.tetraCount());
     std::memcpy(tetra.data(), set.indices.data(), set.indices.size() * sizeof(TetraSet::Index));
     std::shuffle(tetra.begin(), tetra.end(), random);
-    for (auto& t : tetra) std::shuffle(t.begin(), t.end(), random);
+    for (auto& t : tetra)
+        std::shuffle(t.begin(), t.end(), random);
     std::memcpy(other.indices.data(), tetra.data(), set.indices.size() * sizeof(TetraSet::Index));
     const std::vector<Box3d> boxes = latticeBoxes(glm::dvec3(4.0), random);
-    for (const auto mode : {SamplingMode::VIEWPORT_ALIGNED, SamplingMode::AXIS_ALIGNED,
-                            SamplingMode::SPHERICAL}) {
+    for (const auto mode :
+         {SamplingMode::VIEWPORT_ALIGNED, SamplingMode::AXIS_ALIGNED, SamplingMode::SPHERICAL}) {
         SamplingParameters p;
         p.mode = mode;
         p.periodVoxel = glm::dvec3(0.3);
@@ -251,20 +260,22 @@ TEST(PolygonizeProperty, IndependentOfTranslationByRepresentableOffsets)
 {
     std::mt19937 random(6);
     TetraSet set = jitteredGrid(4, random, 0.15);
-    for (double& v : set.vertices.values()) v = std::round(v * 65536.0) / 65536.0;
+    for (double& v : set.vertices.values())
+        v = std::round(v * 65536.0) / 65536.0;
     std::vector<Box3d> boxes = latticeBoxes(glm::dvec3(4.0), random);
     for (Box3d& b : boxes) {
         b.min = glm::round(b.min * 1024.0) / 1024.0;
         b.max = glm::round(b.max * 1024.0) / 1024.0;
     }
     View view = viewAlong({1, 2, 3});
-    for (const glm::dvec3 offset : {glm::dvec3(6400000.0, -3200000.0, 1048576.0),
-                                    glm::dvec3(0.25, 1e9, -64.5)}) {
+    for (const glm::dvec3 offset :
+         {glm::dvec3(6400000.0, -3200000.0, 1048576.0), glm::dvec3(0.25, 1e9, -64.5)}) {
         TetraSet moved = set;
         for (std::size_t i = 0; i < set.vertices.size(); ++i)
             moved.vertices.setPosition(i, set.vertices.position(i) + offset);
         std::vector<Box3d> movedBoxes = boxes;
-        for (Box3d& b : movedBoxes) b = {b.min + offset, b.max + offset};
+        for (Box3d& b : movedBoxes)
+            b = {b.min + offset, b.max + offset};
         View movedView = view;
         movedView.toEye = view.toEye * glm::translate(glm::dmat4(1.0), -offset);
         SamplingParameters p, q;
@@ -322,7 +333,8 @@ TEST(PolygonizeProperty, NastyTetrahedraAreHarmless)
             if (round % 5 == 0) p = glm::round(p * 2.0);           // many coincide
             set.vertices.setPosition(i, p);
         }
-        for (int i = 0; i < 40; ++i) set.indices.push_back(random() % 12); // repeats included
+        for (int i = 0; i < 40; ++i)
+            set.indices.push_back(random() % 12); // repeats included
         SamplingParameters p;
         p.periodVoxel = glm::dvec3(0.01);
         p.maximumSamples = 64;
@@ -345,7 +357,8 @@ TEST(PolygonizeProperty, TetrahedraWithoutVolumeGiveNoArea)
     for (const glm::dvec3 d : {glm::dvec3(0, 0, 1), {1, 0, 0}, {1, 2, 3}}) {
         ASSERT_TRUE(polygonize(set, {}, viewAlong(d), SamplingParameters(), out).ok());
         double a = 0.0;
-        for (const FaceRange& r : out.ranges) a += area(out.faces, r);
+        for (const FaceRange& r : out.ranges)
+            a += area(out.faces, r);
         EXPECT_NEAR(a, 0.0, 1e-6);
     }
     ASSERT_TRUE(polygonize(TetraSet(), {}, viewAlong({1, 0, 0}), SamplingParameters(), out).ok());

@@ -1,6 +1,6 @@
+#include "osgVolumizer/core/sampling/Sample.h"
 #include "TestGeometry.h"
 #include "osgVolumizer/core/geometry/ConvexPieces.h"
-#include "osgVolumizer/core/sampling/Sample.h"
 
 #include <gtest/gtest.h>
 
@@ -89,7 +89,8 @@ TEST(Sample, HalfSpacesSplitAllFieldsWithoutGapOrOverlap)
     const auto field = [](const glm::dvec3& p, int k) { return 3.0 * p.x - p.y * k + 0.5 * p.z; };
     for (std::size_t i = 0; i < 8; ++i) {
         const glm::dvec3 p = set.vertices.position(i);
-        for (int k = 0; k < 15; ++k) colored.vertices.record(i)[k] = field(p, k);
+        for (int k = 0; k < 15; ++k)
+            colored.vertices.record(i)[k] = field(p, k);
         colored.vertices.setPosition(i, p);
     }
     PolygonSet faces;
@@ -121,8 +122,9 @@ TEST(Sample, HalfSpacesSplitAllFieldsWithoutGapOrOverlap)
 TEST(Sample, RefusesBadIndices)
 {
     PolygonSet out;
-    EXPECT_EQ(sample(makeBox(glm::dvec3(0.0), glm::dvec3(1.0)), 5, Planes({1, 0, 0}), {0.5}, out).code,
-              ErrorCode::INDEX_OUT_OF_RANGE);
+    EXPECT_EQ(
+        sample(makeBox(glm::dvec3(0.0), glm::dvec3(1.0)), 5, Planes({1, 0, 0}), {0.5}, out).code,
+        ErrorCode::INDEX_OUT_OF_RANGE);
 }
 
 TEST(Sample, SliceOfAPolytopeIsTheSumOfItsTetrahedra)
@@ -174,7 +176,8 @@ TEST(Mpr, PlaneAndPolygonThroughBricks)
     ASSERT_TRUE(p.polygonizeMPR(l, glm::dvec3(0.0), out).ok());
     EXPECT_NEAR(area(out.faces, out.range(0, 1)), 2.0 * 6.0 + 2.0 * 2.0, 1e-5);
     EXPECT_EQ(out.range(0, 0).faceCount, 0u);
-    ASSERT_TRUE(p.polygonizeMPR({{1, 1, 1}, {7, 1, 2}, {7, 7, 5}, {1, 7, 4}}, glm::dvec3(0.0), out).ok());
+    ASSERT_TRUE(
+        p.polygonizeMPR({{1, 1, 1}, {7, 1, 2}, {7, 7, 5}, {1, 7, 4}}, glm::dvec3(0.0), out).ok());
     const double whole = glm::length(glm::cross(glm::dvec3(6, 0, 1), glm::dvec3(0, 6, 3)));
     EXPECT_NEAR(area(out.faces, out.range(0, 0)) + area(out.faces, out.range(0, 1)), whole, 1e-4);
 }
@@ -190,7 +193,8 @@ TEST(Mpr, RefusesWhatIsNoPlaneOrPolygon)
     EXPECT_EQ(p.polygonizeMPR(Points{{0, 0, 0}, {1, 0, 0}}, o, out).code, ErrorCode::VALUE_INVALID);
     EXPECT_EQ(p.polygonizeMPR(Points{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, o, out).code,
               ErrorCode::VALUE_INVALID);
-    const Status bent = p.polygonizeMPR(Points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}}, o, out);
+    const Status bent =
+        p.polygonizeMPR(Points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}}, o, out);
     EXPECT_EQ(bent.code, ErrorCode::VALUE_INVALID);
 }
 

@@ -1,5 +1,5 @@
-#include "TestGeometry.h"
 #include "osgVolumizer/core/geometry/Solids.h"
+#include "TestGeometry.h"
 #include "osgVolumizer/core/geometry/TetraMesh.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,8 @@ void expectMesh(const TetraSet& set)
 {
     ASSERT_TRUE(set.validate().ok());
     ASSERT_GT(set.tetraCount(), 0u);
-    for (std::size_t t = 0; t < set.tetraCount(); ++t) ASSERT_GT(orientation(set, t), 0.0) << t;
+    for (std::size_t t = 0; t < set.tetraCount(); ++t)
+        ASSERT_GT(orientation(set, t), 0.0) << t;
     const Adjacency adjacency = findAdjacency(set);
     EXPECT_TRUE(adjacency.nonManifold.empty());
     glm::dvec3 sum(0.0);
@@ -55,7 +56,8 @@ VertexArray vertexArray(const std::vector<glm::dvec3>& points)
 {
     VertexArray v;
     v.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) v.setPosition(i, points[i]);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        v.setPosition(i, points[i]);
     return v;
 }
 
@@ -82,7 +84,8 @@ TEST(Solids, BoxInFiveTwentyFourAndOne)
     ASSERT_EQ(one->tetraCount(), 1u);
     expectMesh(*one);
     const PointLocator locator(*one);
-    for (int i = 0; i < 8; ++i) EXPECT_TRUE(locator.locate(box.corner(i))) << i;
+    for (int i = 0; i < 8; ++i)
+        EXPECT_TRUE(locator.locate(box.corner(i))) << i;
     EXPECT_NEAR(volume(*one), 9.0 * 42.0, 1e-9);
     EXPECT_EQ(tessellateBox({{0, 0, 0}, {1, 0, 1}}, BoxTessellation::FIVE).status.code,
               ErrorCode::VALUE_INVALID);
@@ -91,23 +94,37 @@ TEST(Solids, BoxInFiveTwentyFourAndOne)
 TEST(Solids, RoundOnesConvergeAtSecondOrder)
 {
     const glm::dvec3 c(1.0, -2.0, 0.5);
-    expectSecondOrder([&](int n) { return Cone{c, c + glm::dvec3(1, 2, 2), 0.7, n}.tessellate(); },
-                      PI * 0.49);
     expectSecondOrder(
-        [&](int n) { return Cylinder{c, c + glm::dvec3(2, -1, 2), 0.7, n, 3}.tessellate(); },
+        [&](int n) {
+            return Cone{c, c + glm::dvec3(1, 2, 2), 0.7, n}.tessellate();
+        },
+        PI * 0.49);
+    expectSecondOrder(
+        [&](int n) {
+            return Cylinder{c, c + glm::dvec3(2, -1, 2), 0.7, n, 3}.tessellate();
+        },
         PI * 0.49 * 3.0);
-    expectSecondOrder([&](int n) { return Sphere{c, 1.5, 2 * n, n}.tessellate(); },
-                      4.0 / 3.0 * PI * 3.375);
-    expectSecondOrder([&](int n) { return GeodesicSphere{c, 1.5, n / 4}.tessellate(); },
-                      4.0 / 3.0 * PI * 3.375);
+    expectSecondOrder(
+        [&](int n) {
+            return Sphere{c, 1.5, 2 * n, n}.tessellate();
+        },
+        4.0 / 3.0 * PI * 3.375);
+    expectSecondOrder(
+        [&](int n) {
+            return GeodesicSphere{c, 1.5, n / 4}.tessellate();
+        },
+        4.0 / 3.0 * PI * 3.375);
 }
 
 TEST(Solids, ComplementsConvergeAtSecondOrder)
 {
     const Box3d box{{-2, -3, -4}, {3, 4, 5}};
     const glm::dvec3 c(0.5, 0.25, 1.0);
-    expectSecondOrder([&](int n) { return BoxMinusSphere{box, c, 1.9, n}.tessellate(); },
-                      315.0 - 4.0 / 3.0 * PI * 1.9 * 1.9 * 1.9);
+    expectSecondOrder(
+        [&](int n) {
+            return BoxMinusSphere{box, c, 1.9, n}.tessellate();
+        },
+        315.0 - 4.0 / 3.0 * PI * 1.9 * 1.9 * 1.9);
     for (int axis = 0; axis < 3; ++axis)
         expectSecondOrder(
             [&](int n) { return BoxMinusCylinder{box, c, axis, 1.5, n, 2}.tessellate(); },
@@ -153,10 +170,13 @@ TEST(Cells, EveryKindKeepsItsVolumeWhateverTheNumbering)
                 CellSet set;
                 set.kind = c.kind;
                 set.vertices.resize(8);
-                const auto renumber = [&](int i) { return (TetraSet::Index(i) * factor + shift) % 8; };
+                const auto renumber = [&](int i) {
+                    return (TetraSet::Index(i) * factor + shift) % 8;
+                };
                 for (int i = 0; i < 8; ++i)
                     set.vertices.setPosition(renumber(i), ring[std::size_t(i)]);
-                for (const int i : c.corners) set.indices.push_back(renumber(i));
+                for (const int i : c.corners)
+                    set.indices.push_back(renumber(i));
                 const Result<TetraSet> t = set.tessellate();
                 ASSERT_TRUE(t.ok());
                 expectMesh(*t);
@@ -180,17 +200,26 @@ TEST(Cells, NeighboursOfDifferentKindsShareDiagonals)
     for (int z = 0; z < 3; ++z)
         for (int y = 0; y < 3; ++y)
             for (int x = 0; x < 3; ++x) {
-                const TetraSet::Index c[8] = {at(x, y, z),         at(x + 1, y, z),
-                                              at(x + 1, y + 1, z), at(x, y + 1, z),
-                                              at(x, y, z + 1),     at(x + 1, y, z + 1),
-                                              at(x + 1, y + 1, z + 1), at(x, y + 1, z + 1)};
+                const TetraSet::Index c[8] = {at(x, y, z),
+                                              at(x + 1, y, z),
+                                              at(x + 1, y + 1, z),
+                                              at(x, y + 1, z),
+                                              at(x, y, z + 1),
+                                              at(x + 1, y, z + 1),
+                                              at(x + 1, y + 1, z + 1),
+                                              at(x, y + 1, z + 1)};
                 if (x != 1 || y != 1 || z != 1) {
                     hexas.indices.insert(hexas.indices.end(), c, c + 8);
                     continue;
                 }
-                for (const auto& q : {std::array<int, 4>{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
-                                      {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}}) {
-                    for (const int i : q) pyramids.indices.push_back(c[i]);
+                for (const auto& q : {std::array<int, 4>{0, 1, 2, 3},
+                                      {4, 7, 6, 5},
+                                      {0, 4, 5, 1},
+                                      {1, 5, 6, 2},
+                                      {2, 6, 7, 3},
+                                      {3, 7, 4, 0}}) {
+                    for (const int i : q)
+                        pyramids.indices.push_back(c[i]);
                     pyramids.indices.push_back(64);
                 }
             }
@@ -226,7 +255,8 @@ TEST(Cells, Strips)
     EXPECT_NEAR(volume(bases), 1.5, 1e-12);
     // A zigzag of pillars (bottom, top).
     for (int i = 0; i < 5; ++i)
-        for (int z = 0; z < 2; ++z) pairs.push_back(glm::dvec3(i * 0.5, i % 2, z));
+        for (int z = 0; z < 2; ++z)
+            pairs.push_back(glm::dvec3(i * 0.5, i % 2, z));
     TetraSet faces = strip(StripKind::PRISM_FACE, pairs);
     EXPECT_EQ(repairOrientation(faces), 6u); // every other prism of a strip is turned round
     expectMesh(faces);
@@ -238,7 +268,8 @@ TEST(Cells, Strips)
     // Pyramids over a quad strip.
     std::vector<glm::dvec3> pyramids{{1.5, 0.5, 2}};
     for (int x = 0; x < 4; ++x)
-        for (int y = 0; y < 2; ++y) pyramids.push_back(glm::dvec3(x, y, 0));
+        for (int y = 0; y < 2; ++y)
+            pyramids.push_back(glm::dvec3(x, y, 0));
     TetraSet fan = strip(StripKind::PYRAMID, pyramids);
     repairOrientation(fan);
     expectMesh(fan);

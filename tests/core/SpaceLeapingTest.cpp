@@ -20,8 +20,8 @@ std::vector<ValueRange> ball()
     for (int z = 0; z < CELLS.z; ++z)
         for (int y = 0; y < CELLS.y; ++y)
             for (int x = 0; x < CELLS.x; ++x) {
-                const float d = std::sqrt(float((x - 12) * (x - 12) + (y - 9) * (y - 9) +
-                                                (z - 8) * (z - 8)));
+                const float d =
+                    std::sqrt(float((x - 12) * (x - 12) + (y - 9) * (y - 9) + (z - 8) * (z - 8)));
                 r.push_back({d - 0.5f, d + 0.5f});
             }
     return r;

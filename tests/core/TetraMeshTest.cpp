@@ -1,5 +1,5 @@
-#include "TestGeometry.h"
 #include "osgVolumizer/core/geometry/TetraMesh.h"
+#include "TestGeometry.h"
 
 #include <gtest/gtest.h>
 
@@ -118,7 +118,8 @@ TEST(TetraMesh, VisibilityOrderHoldsAlongEveryRay)
         EXPECT_TRUE(order.cyclic.empty());
         ASSERT_EQ(order.order.size(), grid.tetraCount());
         std::vector<std::size_t> place(grid.tetraCount());
-        for (std::size_t i = 0; i < order.order.size(); ++i) place[order.order[i]] = i;
+        for (std::size_t i = 0; i < order.order.size(); ++i)
+            place[order.order[i]] = i;
         for (int ray = 0; ray < 40; ++ray) {
             const glm::dvec3 inside(u(random) * 0.25 + 1.1, u(random) * 0.25 + 1.1,
                                     u(random) * 0.25 + 1.1);
@@ -138,8 +139,8 @@ TEST(TetraMesh, VisibilityOrderHoldsAlongEveryRay)
 
 TEST(TetraMesh, CyclesAreReportedAndAllTetrahedraStillCome)
 {
-    // Three slabs that lie on each other in a ring (like the leaves of a box lid), seen from above: each
-    // has the next behind it. Made by hand as adjacency over three faces.
+    // Three slabs that lie on each other in a ring (like the leaves of a box lid), seen from above:
+    // each has the next behind it. Made by hand as adjacency over three faces.
     TetraSet set;
     const double third = 2.0943951023931953;
     for (int i = 0; i < 3; ++i) {
@@ -151,11 +152,12 @@ TEST(TetraMesh, CyclesAreReportedAndAllTetrahedraStillCome)
         set.vertices.setPosition(n + 1, {0.3 * std::cos(a), 0.3 * std::sin(a), -1.0});
         set.vertices.setPosition(n + 2, {std::cos(b), std::sin(b), 1.0});
         set.vertices.setPosition(n + 3, {0.3 * std::cos(b), 0.3 * std::sin(b), 1.0});
-        for (TetraSet::Index k = 0; k < 4; ++k) set.indices.push_back(TetraSet::Index(n) + k);
+        for (TetraSet::Index k = 0; k < 4; ++k)
+            set.indices.push_back(TetraSet::Index(n) + k);
     }
     repairOrientation(set);
-    // Each one's lower end lies below the upper end of the one before. Relate them over the faces that
-    // look up and down there.
+    // Each one's lower end lies below the upper end of the one before. Relate them over the faces
+    // that look up and down there.
     Adjacency a = findAdjacency(set);
     const auto facing = [&](std::size_t t, double sign) {
         for (int i = 0; i < 4; ++i) {

@@ -20,15 +20,13 @@ constexpr CellFaces CELLS[4] = {
     {4, 4, {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {2, 0, 3, -1}, {}, {}}},
     {5, 5, {{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}, {}}},
     {6, 5, {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}, {}}},
-    {8,
-     6,
-     {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}}};
+    {8, 6, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}}};
 
 void addTetra(TetraSet& set, TetraSet::Index apex, TetraSet::Index a, TetraSet::Index b,
               TetraSet::Index c)
 {
-    // The face is seen counter-clockwise from outside, so the apex is on the inside: (a, c, b, apex) is
-    // positive.
+    // The face is seen counter-clockwise from outside, so the apex is on the inside: (a, c, b,
+    // apex) is positive.
     set.indices.insert(set.indices.end(), {a, c, b, apex});
 }
 
@@ -52,7 +50,10 @@ void addCell(TetraSet& set, const CellFaces& cell, const TetraSet::Index* v)
 
 } // namespace
 
-int cellSize(CellKind kind) { return CELLS[static_cast<int>(kind)].vertices; }
+int cellSize(CellKind kind)
+{
+    return CELLS[static_cast<int>(kind)].vertices;
+}
 
 Result<TetraSet> CellSet::tessellate() const
 {
@@ -75,7 +76,8 @@ Result<TetraSet> CellSet::tessellate() const
                           static_cast<std::int64_t>(i));
     TetraSet set;
     set.vertices = vertices;
-    for (std::size_t i = 0; i < indices.size(); i += size) addCell(set, cell, indices.data() + i);
+    for (std::size_t i = 0; i < indices.size(); i += size)
+        addCell(set, cell, indices.data() + i);
     if (Status s = set.validate(); !s) return s;
     return set;
 }
@@ -107,10 +109,10 @@ Result<CellSet> makeStrip(StripKind kind, VertexArray vertices,
     const auto first = static_cast<std::size_t>(strip.first) + apex;
     const auto step = static_cast<std::size_t>(strip.step);
     if (indices.size() < first || (indices.size() - first) % step != 0)
-        return Status(ErrorCode::SIZE_MISMATCH,
-                      "Strip: " + std::to_string(indices.size()) + " indices are not " +
-                          std::to_string(first) + " and a multiple of " + std::to_string(step) +
-                          " more.");
+        return Status(ErrorCode::SIZE_MISMATCH, "Strip: " + std::to_string(indices.size()) +
+                                                    " indices are not " + std::to_string(first) +
+                                                    " and a multiple of " + std::to_string(step) +
+                                                    " more.");
     CellSet set;
     set.kind = strip.cell;
     set.vertices = std::move(vertices);

@@ -53,17 +53,17 @@ Result<TetraSet> BoxMinusSphere::tessellate() const
     const int n = divisions;
     CellSet cells;
     cells.kind = CellKind::HEXA;
-    // Grid points of the box's surface; each has a partner on the sphere, straight towards the centre.
+    // Grid points of the box's surface; each has a partner on the sphere, straight towards the
+    // centre.
     std::map<std::tuple<int, int, int>, Index> known;
     const auto point = [&](const glm::ivec3& g) {
-        const auto found = known.emplace(std::make_tuple(g.x, g.y, g.z),
-                                         static_cast<Index>(2 * known.size()));
+        const auto found =
+            known.emplace(std::make_tuple(g.x, g.y, g.z), static_cast<Index>(2 * known.size()));
         const Index i = found.first->second;
         if (found.second) {
             const glm::dvec3 outer = box.min + box.size() * (glm::dvec3(g) / double(n));
             setPosition(cells.vertices, i, outer);
-            setPosition(cells.vertices, i + 1,
-                        center + radius * glm::normalize(outer - center));
+            setPosition(cells.vertices, i + 1, center + radius * glm::normalize(outer - center));
         }
         return i;
     };
@@ -84,7 +84,8 @@ Result<TetraSet> BoxMinusSphere::tessellate() const
                         ring[k] = point(g);
                     }
                     for (int inner = 1; inner >= 0; --inner)
-                        for (const Index r : ring) cells.indices.push_back(r + Index(inner));
+                        for (const Index r : ring)
+                            cells.indices.push_back(r + Index(inner));
                 }
     return cells.tessellate();
 }

@@ -37,8 +37,8 @@ double turn(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const
     return glm::dot(glm::cross(b - a, c - a), normal);
 }
 
-/// Index in `rest` of a corner whose triangle holds no other, or the flattest one if rounding leaves
-/// none.
+/// Index in `rest` of a corner whose triangle holds no other, or the flattest one if rounding
+/// leaves none.
 std::size_t findEar(const std::vector<glm::dvec3>& p, const std::vector<std::size_t>& rest,
                     const glm::dvec3& normal)
 {
@@ -70,8 +70,8 @@ Status convexPieces(const std::vector<glm::dvec3>& polygon, Plane& plane,
     const std::size_t n = polygon.size();
     if (n < 3) return invalid("it has " + std::to_string(n) + " corners.");
     if (n > MAX_CORNERS)
-        return {ErrorCode::TOO_LARGE, "Polygon: it has " + std::to_string(n) +
-                                          " corners; 1024 are possible."};
+        return {ErrorCode::TOO_LARGE,
+                "Polygon: it has " + std::to_string(n) + " corners; 1024 are possible."};
     double size = 0.0;
     glm::dvec3 normal(0.0); // Newell's
     for (std::size_t i = 0; i < n; ++i) {

@@ -17,7 +17,8 @@ constexpr double TOLERANCE = 1e-12;
 Box3d boundsOf(const TetraSet& set, std::uint32_t t)
 {
     Box3d box;
-    for (std::size_t k = 0; k < 4; ++k) box.expand(set.vertices.position(set.indices[4 * t + k]));
+    for (std::size_t k = 0; k < 4; ++k)
+        box.expand(set.vertices.position(set.indices[4 * t + k]));
     return box;
 }
 
@@ -33,7 +34,8 @@ bool holds(const Box3d& box, const glm::dvec3& p)
 bool weigh(const TetraSet& set, std::uint32_t t, const glm::dvec3& p, glm::dvec4& weights)
 {
     glm::dvec3 v[4];
-    for (std::size_t k = 0; k < 4; ++k) v[k] = set.vertices.position(set.indices[4 * t + k]);
+    for (std::size_t k = 0; k < 4; ++k)
+        v[k] = set.vertices.position(set.indices[4 * t + k]);
     const glm::dvec3 a = v[1] - v[0], b = v[2] - v[0], c = v[3] - v[0], q = p - v[0];
     const double six = glm::dot(glm::cross(a, b), c);
     if (six == 0.0) return false;

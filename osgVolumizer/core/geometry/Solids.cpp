@@ -84,19 +84,20 @@ Result<TetraSet> tessellateBox(const Box3d& box, BoxTessellation how)
 {
     Check check("Box");
     check.finite("min", box.min).finite("max", box.max);
-    for (int a = 0; a < 3; ++a) check.positive("size", box.size()[a]);
+    for (int a = 0; a < 3; ++a)
+        check.positive("size", box.size()[a]);
     if (!check.status) return check.status;
     TetraSet set;
     if (how == BoxTessellation::ENCLOSING) {
         // x + y + z <= 3 and its three mirror images touch the cube [-1, 1]^3 in four corners.
-        static constexpr double corners[4][3] = {
-            {-3, -3, -3}, {-3, 3, 3}, {3, -3, 3}, {3, 3, -3}};
+        static constexpr double corners[4][3] = {{-3, -3, -3}, {-3, 3, 3}, {3, -3, 3}, {3, 3, -3}};
         for (const auto& c : corners)
             addVertex(set, box.center() + 0.5 * box.size() * glm::dvec3(c[0], c[1], c[2]));
         set.indices = {0, 1, 2, 3};
         return set;
     }
-    for (int i = 0; i < 8; ++i) addVertex(set, box.corner(i));
+    for (int i = 0; i < 8; ++i)
+        addVertex(set, box.corner(i));
     if (how == BoxTessellation::FIVE) {
         set.indices = {0, 5, 3, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 5, 0, 6, 7, 3, 5, 6};
         return set;
@@ -105,11 +106,10 @@ Result<TetraSet> tessellateBox(const Box3d& box, BoxTessellation how)
                                           {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     const Index middle = addVertex(set, box.center());
     for (const auto& ring : rings) {
-        const Index center = addVertex(set, 0.5 * (set.vertices.position(ring[0]) +
-                                                   set.vertices.position(ring[2])));
+        const Index center =
+            addVertex(set, 0.5 * (set.vertices.position(ring[0]) + set.vertices.position(ring[2])));
         for (int i = 0; i < 4; ++i)
-            set.indices.insert(set.indices.end(),
-                               {ring[i], center, ring[(i + 1) % 4], middle});
+            set.indices.insert(set.indices.end(), {ring[i], center, ring[(i + 1) % 4], middle});
     }
     return set;
 }
@@ -126,10 +126,10 @@ Result<TetraSet> Cone::tessellate() const
     TetraSet set;
     addVertex(set, base);
     addVertex(set, apex);
-    for (int i = 0; i < slices; ++i) addVertex(set, onCircle(base, u, v, radius, i, slices));
     for (int i = 0; i < slices; ++i)
-        set.indices.insert(set.indices.end(),
-                           {0u, Index(2 + i), Index(2 + (i + 1) % slices), 1u});
+        addVertex(set, onCircle(base, u, v, radius, i, slices));
+    for (int i = 0; i < slices; ++i)
+        set.indices.insert(set.indices.end(), {0u, Index(2 + i), Index(2 + (i + 1) % slices), 1u});
     return set;
 }
 
@@ -150,7 +150,8 @@ Result<TetraSet> Cylinder::tessellate() const
     for (int s = 0; s <= stacks; ++s) {
         const glm::dvec3 center = bottom + (top - bottom) * (double(s) / stacks);
         addVertex(rings, center);
-        for (int i = 0; i < slices; ++i) addVertex(rings, onCircle(center, u, v, radius, i, slices));
+        for (int i = 0; i < slices; ++i)
+            addVertex(rings, onCircle(center, u, v, radius, i, slices));
     }
     for (int s = 0; s < stacks; ++s)
         for (int i = 0; i < slices; ++i)
@@ -207,13 +208,13 @@ Result<TetraSet> GeodesicSphere::tessellate() const
                                     {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
                                     {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
     static constexpr int faces[20][3] = {
-        {0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+        {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
         {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-        {3, 8, 9},  {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+        {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
     TetraSet set;
     addVertex(set, center);
-    // Points on corners and edges are shared by faces: they are found by the pair of points that they
-    // lie between and their distance from the lower one.
+    // Points on corners and edges are shared by faces: they are found by the pair of points that
+    // they lie between and their distance from the lower one.
     EdgeMap known;
     const int n = frequency;
     const auto point = [&](const int* f, int i, int j) {
@@ -224,8 +225,7 @@ Result<TetraSet> GeodesicSphere::tessellate() const
         for (int k = 0; k < 3; ++k) {
             if (weight[k] == 0) continue;
             p += double(weight[k]) * corners[f[k]];
-            if (used < 2)
-                key[used] = static_cast<std::uint32_t>(f[k] * (n + 1) + weight[k]);
+            if (used < 2) key[used] = static_cast<std::uint32_t>(f[k] * (n + 1) + weight[k]);
             ++used;
         }
         p = center + radius * glm::normalize(p);
@@ -238,7 +238,8 @@ Result<TetraSet> GeodesicSphere::tessellate() const
     for (const auto& f : faces) {
         for (int j = 0; j <= n; ++j) {
             row.clear();
-            for (int i = 0; i + j <= n; ++i) row.push_back(point(f, i, j));
+            for (int i = 0; i + j <= n; ++i)
+                row.push_back(point(f, i, j));
             for (std::size_t i = 0; j > 0 && i < row.size(); ++i) {
                 set.indices.insert(set.indices.end(), {above[i], row[i], above[i + 1], 0u});
                 if (i + 1 < row.size())

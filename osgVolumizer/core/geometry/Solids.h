@@ -13,26 +13,33 @@ namespace osgVolumizer {
 namespace core {
 
 /// How a box is cut into tetrahedra: 5, 24 (about its centre, symmetric), or one that encloses it.
-enum class BoxTessellation : int { FIVE, TWENTY_FOUR, ENCLOSING };
+enum class BoxTessellation : int
+{
+    FIVE,
+    TWENTY_FOUR,
+    ENCLOSING
+};
 
-/// Kinds of indexed solids, with the vertices of one cell. Vertices of a pair of faces lie above each
-/// other in the same order.
-enum class CellKind : int {
-    TETRA,          ///< 4
-    PYRAMID,        ///< base 0 1 2 3 in a ring, apex 4
-    PRISM,          ///< triangle 0 1 2, triangle 3 4 5 above it
-    HEXA,           ///< ring 0 1 2 3, ring 4 5 6 7 above it
+/// Kinds of indexed solids, with the vertices of one cell. Vertices of a pair of faces lie above
+/// each other in the same order.
+enum class CellKind : int
+{
+    TETRA,   ///< 4
+    PYRAMID, ///< base 0 1 2 3 in a ring, apex 4
+    PRISM,   ///< triangle 0 1 2, triangle 3 4 5 above it
+    HEXA,    ///< ring 0 1 2 3, ring 4 5 6 7 above it
 };
 
 /// Runs of cells that share vertices.
-enum class StripKind : int {
-    TETRA_FACE,  ///< each vertex after the third makes a tetrahedron with the three before it
-    TETRA_EDGE,  ///< vertices in pairs; each pair after the first makes one with the pair before it
-    HEXA,        ///< rings of 4; each ring after the first makes a hexahedron with the ring before it
-    PYRAMID,     ///< apex, then a quad strip of base vertices (left, right, left, right...)
-    PRISM_FACE,  ///< pairs (bottom, top); each after the second makes a prism with the two before it
-    PRISM_BASE,  ///< triangles; each after the first makes a prism with the triangle before it
-    PRISM_EDGE,  ///< pairs (bottom, top); prisms of pairs 0 1 2, 2 3 4...: neighbours share one edge
+enum class StripKind : int
+{
+    TETRA_FACE, ///< each vertex after the third makes a tetrahedron with the three before it
+    TETRA_EDGE, ///< vertices in pairs; each pair after the first makes one with the pair before it
+    HEXA,    ///< rings of 4; each ring after the first makes a hexahedron with the ring before it
+    PYRAMID, ///< apex, then a quad strip of base vertices (left, right, left, right...)
+    PRISM_FACE, ///< pairs (bottom, top); each after the second makes a prism with the two before it
+    PRISM_BASE, ///< triangles; each after the first makes a prism with the triangle before it
+    PRISM_EDGE, ///< pairs (bottom, top); prisms of pairs 0 1 2, 2 3 4...: neighbours share one edge
 };
 
 /// An indexed solid: cells over shared vertices.
@@ -42,10 +49,11 @@ struct OSGVOLUMIZER_CORE_EXPORT CellSet
     VertexArray vertices;
     std::vector<TetraSet::Index> indices;
 
-    /// Cuts every cell into tetrahedra around its lowest vertex, every quadrilateral by the diagonal
-    /// through its lowest vertex, so neighbours agree (Dompierre, Labbe, Vallet and Camarero, "How to
-    /// subdivide pyramids, prisms, and hexahedra into tetrahedra", 1999). Orientation follows that of
-    /// the cell. INDEX_OUT_OF_RANGE, SIZE_MISMATCH and VALUE_INVALID with the offending index.
+    /// Cuts every cell into tetrahedra around its lowest vertex, every quadrilateral by the
+    /// diagonal through its lowest vertex, so neighbours agree (Dompierre, Labbe, Vallet and
+    /// Camarero, "How to subdivide pyramids, prisms, and hexahedra into tetrahedra", 1999).
+    /// Orientation follows that of the cell. INDEX_OUT_OF_RANGE, SIZE_MISMATCH and VALUE_INVALID
+    /// with the offending index.
     Result<TetraSet> tessellate() const;
 };
 
@@ -56,8 +64,8 @@ OSGVOLUMIZER_CORE_EXPORT int cellSize(CellKind kind);
 OSGVOLUMIZER_CORE_EXPORT Result<CellSet> makeStrip(StripKind kind, VertexArray vertices,
                                                    const std::vector<TetraSet::Index>& indices);
 
-/// VALUE_INVALID for an empty box. ENCLOSING is a tetrahedron that touches the box with its four faces
-/// in four of its corners.
+/// VALUE_INVALID for an empty box. ENCLOSING is a tetrahedron that touches the box with its four
+/// faces in four of its corners.
 OSGVOLUMIZER_CORE_EXPORT Result<TetraSet> tessellateBox(const Box3d& box, BoxTessellation how);
 
 // Solids with curved faces are inscribed, so that their volumes converge from below, at second
@@ -99,8 +107,8 @@ struct OSGVOLUMIZER_CORE_EXPORT GeodesicSphere
     Result<TetraSet> tessellate() const;
 };
 
-/// What is left of a box without a sphere that lies inside it: hexahedra between sphere and box, each
-/// face of the box divided `divisions` times. VALUE_INVALID where the sphere touches the box.
+/// What is left of a box without a sphere that lies inside it: hexahedra between sphere and box,
+/// each face of the box divided `divisions` times. VALUE_INVALID where the sphere touches the box.
 struct OSGVOLUMIZER_CORE_EXPORT BoxMinusSphere
 {
     Box3d box;

@@ -29,10 +29,12 @@ Status SpaceLeaper::setRanges(const glm::ivec3& cells, std::vector<ValueRange> r
                         std::to_string(ranges[i].maximum) + ".",
                     static_cast<std::int64_t>(i)};
     _cells = cells;
-    for (int a = 0; a < 3; ++a) _regions[a] = (cells[a] + REGION - 1) / REGION;
+    for (int a = 0; a < 3; ++a)
+        _regions[a] = (cells[a] + REGION - 1) / REGION;
     _ranges = std::move(ranges);
     _occupied.assign(_ranges.size(), 0);
-    _regionBoxes.assign(static_cast<std::size_t>(_regions.x) * static_cast<std::size_t>(_regions.y) *
+    _regionBoxes.assign(static_cast<std::size_t>(_regions.x) *
+                            static_cast<std::size_t>(_regions.y) *
                             static_cast<std::size_t>(_regions.z),
                         {});
     _boxes.clear();
@@ -77,12 +79,16 @@ void SpaceLeaper::mergeRegion(std::size_t region)
             for (int x = 0; x < n.x; ++x) {
                 if (!left(x, y, z)) continue;
                 glm::ivec3 end(x + 1, y + 1, z + 1);
-                while (end.x < n.x && left(end.x, y, z)) ++end.x;
-                while (end.y < n.y && allLeft(x, end.x, end.y, end.y + 1, z)) ++end.y;
-                while (end.z < n.z && allLeft(x, end.x, y, end.y, end.z)) ++end.z;
+                while (end.x < n.x && left(end.x, y, z))
+                    ++end.x;
+                while (end.y < n.y && allLeft(x, end.x, end.y, end.y + 1, z))
+                    ++end.y;
+                while (end.z < n.z && allLeft(x, end.x, y, end.y, end.z))
+                    ++end.z;
                 for (int k = z; k < end.z; ++k)
                     for (int j = y; j < end.y; ++j)
-                        for (int i = x; i < end.x; ++i) left(i, j, k) = 0;
+                        for (int i = x; i < end.x; ++i)
+                            left(i, j, k) = 0;
                 Box3i box;
                 box.min = cells.min + glm::ivec3(x, y, z);
                 box.max = cells.min + end;
@@ -121,8 +127,8 @@ std::vector<Box3d> SpaceLeaper::voxelBoxes(const glm::ivec3& cellSize, const Box
     std::vector<Box3d> r;
     r.reserve(_boxes.size());
     for (const Box3i& b : _boxes) {
-        const Box3d cut = intersection({glm::dvec3(b.min * cellSize), glm::dvec3(b.max * cellSize)},
-                                       extent);
+        const Box3d cut =
+            intersection({glm::dvec3(b.min * cellSize), glm::dvec3(b.max * cellSize)}, extent);
         if (cut.min.x < cut.max.x && cut.min.y < cut.max.y && cut.min.z < cut.max.z)
             r.push_back(cut);
     }
@@ -135,7 +141,8 @@ TetraSet SpaceLeaper::tetraSet(const glm::ivec3& cellSize, const Box3d& extent) 
     for (const Box3d& box : voxelBoxes(cellSize, extent)) {
         const TetraSet one = *tessellateBox(box, BoxTessellation::FIVE);
         const auto first = static_cast<TetraSet::Index>(set.vertices.size());
-        for (const TetraSet::Index i : one.indices) set.indices.push_back(first + i);
+        for (const TetraSet::Index i : one.indices)
+            set.indices.push_back(first + i);
         set.vertices.values().insert(set.vertices.values().end(), one.vertices.values().begin(),
                                      one.vertices.values().end());
     }

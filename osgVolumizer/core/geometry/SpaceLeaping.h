@@ -31,8 +31,8 @@ public:
 
     /// \param cells number of cells per axis, each >= 1
     /// \param ranges one per cell, x fastest
-    /// SIZE_MISMATCH, VALUE_INVALID (NaN or minimum > maximum, with the index), TOO_LARGE for more than
-    /// 2^31 cells. Nothing is occupied until update().
+    /// SIZE_MISMATCH, VALUE_INVALID (NaN or minimum > maximum, with the index), TOO_LARGE for more
+    /// than 2^31 cells. Nothing is occupied until update().
     Status setRanges(const glm::ivec3& cells, std::vector<ValueRange> ranges);
 
     /// Decides anew which cells are occupied; true where any changed. `opaque` tells whether the
@@ -49,8 +49,9 @@ public:
     /// The boxes in the voxel frame: cell (i,j,k) spans cellSize from (i,j,k) * cellSize, cut at
     /// `extent`.
     std::vector<Box3d> voxelBoxes(const glm::ivec3& cellSize, const Box3d& extent) const;
-    /// The same as tetrahedra, five per box, V3F. Boxes of different size meet with hanging vertices,
-    /// where pixels may be covered twice or not at all; used as clip boxes they tile exactly.
+    /// The same as tetrahedra, five per box, V3F. Boxes of different size meet with hanging
+    /// vertices, where pixels may be covered twice or not at all; used as clip boxes they tile
+    /// exactly.
     TetraSet tetraSet(const glm::ivec3& cellSize, const Box3d& extent) const;
 
 private:

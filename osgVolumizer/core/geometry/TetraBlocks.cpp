@@ -81,7 +81,6 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
                 _stamps[v] = static_cast<std::uint32_t>(blocks.size() - 1);
                 _local[v] = block.vertexCount++;
                 sourceVertices.push_back(v);
-                block.bounds.expand(set.vertices.position(v) - origin);
             }
             tetrahedra[i].v[k] = static_cast<std::uint8_t>(_local[v]);
         }
@@ -95,12 +94,17 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
     const std::size_t stride = recordSize() - 1;
     const auto position = static_cast<std::size_t>(_format.positionOffset());
     records.resize(sourceVertices.size() * recordSize());
-    for (std::size_t i = 0; i < sourceVertices.size(); ++i) {
-        const double* from = set.vertices.record(sourceVertices[i]);
-        double* to = record(i);
-        std::copy(from, from + stride, to);
-        for (std::size_t a = 0; a < 3; ++a) to[position + a] -= origin[static_cast<int>(a)];
-    }
+    for (Block& block : blocks)
+        for (std::uint32_t i = block.firstVertex; i < block.firstVertex + block.vertexCount; ++i) {
+            const double* from = set.vertices.record(sourceVertices[i]);
+            double* to = record(i);
+            std::copy(from, from + stride, to);
+            for (std::size_t a = 0; a < 3; ++a)
+                to[position + a] -= origin[static_cast<int>(a)];
+            const double *p = to + position, *c = to + clipField();
+            block.bounds.expand({p[0], p[1], p[2]});
+            block.clipBounds.expand({c[0], c[1], c[2]});
+        }
 }
 
 void TetraBlocks::findEdges()
@@ -108,13 +112,7 @@ void TetraBlocks::findEdges()
     static constexpr int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
     edges.clear();
     tetraEdges.resize(tetrahedra.size());
-    // Number of the edge between two vertices of a block, as stamped by the block.
-    struct Entry
-    {
-        std::uint32_t block;
-        std::uint16_t edge;
-    };
-    std::vector<Entry> table(MAX_VERTICES * MAX_VERTICES, {NONE, 0});
+    _edgeTable.assign(MAX_VERTICES * MAX_VERTICES, {NONE, 0});
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {
         Block& block = blocks[i];
         block.firstEdge = static_cast<std::uint32_t>(edges.size());
@@ -122,7 +120,7 @@ void TetraBlocks::findEdges()
             for (int e = 0; e < 6; ++e) {
                 std::uint8_t a = tetrahedra[t].v[ends[e][0]], b = tetrahedra[t].v[ends[e][1]];
                 if (a > b) std::swap(a, b);
-                Entry& entry = table[a * MAX_VERTICES + b];
+                EdgeEntry& entry = _edgeTable[a * MAX_VERTICES + b];
                 if (entry.block != i) {
                     entry = {i, static_cast<std::uint16_t>(block.edgeCount++)};
                     edges.push_back({a, b});
@@ -155,7 +153,8 @@ TetraBlocks::Place TetraBlocks::placeOf(const BoxIndex& boxes, const Block& bloc
     for (int a = 0; a < 3; ++a)
         for (int opposite = 0; opposite < 4; ++opposite) {
             bool flush = true;
-            for (int k = 0; k < 4; ++k) flush = flush && (k == opposite || p[k][a] == upper[a]);
+            for (int k = 0; k < 4; ++k)
+                flush = flush && (k == opposite || p[k][a] == upper[a]);
             if (flush) faces |= 1u << opposite;
         }
     return place | faces << FACE_SHIFT;

@@ -11,9 +11,9 @@
 namespace osgVolumizer {
 namespace core {
 
-/// A tetra set cut into blocks of neighbouring tetrahedra with vertices and edges of their own, so that one
-/// block stays in the first-level cache, is culled by one box test, and is the unit of work of a
-/// thread. Tetrahedra are taken along a Morton curve; all get positive orientation.
+/// A tetra set cut into blocks of neighbouring tetrahedra with vertices and edges of their own, so
+/// that one block stays in the first-level cache, is culled by one box test, and is the unit of
+/// work of a thread. Tetrahedra are taken along a Morton curve; all get positive orientation.
 class OSGVOLUMIZER_CORE_EXPORT TetraBlocks
 {
 public:
@@ -25,7 +25,8 @@ public:
         std::uint32_t firstVertex = 0, vertexCount = 0;
         std::uint32_t firstTetra = 0, tetraCount = 0;
         std::uint32_t firstEdge = 0, edgeCount = 0;
-        Box3d bounds; ///< of the positions, relative to the origin
+        Box3d bounds;     ///< of the positions, relative to the origin
+        Box3d clipBounds; ///< of what clipField() tells
     };
     struct Tetra
     {
@@ -40,9 +41,9 @@ public:
         std::uint8_t a, b; ///< vertices of the block
     };
 
-    /// Where a tetrahedron lies among the clip boxes: CLIP, OUTSIDE, or the box that holds all of it
-    /// in its low bits, with bit FACE_SHIFT + i set where the face opposite vertex i lies in an upper
-    /// plane of the box. Such a face belongs to the next box, if it is a slice.
+    /// Where a tetrahedron lies among the clip boxes: CLIP, OUTSIDE, or the box that holds all of
+    /// it in its low bits, with bit FACE_SHIFT + i set where the face opposite vertex i lies in an
+    /// upper plane of the box. Such a face belongs to the next box, if it is a slice.
     using Place = std::uint32_t;
     static constexpr Place CLIP = 0xffffffffu;
     static constexpr Place OUTSIDE = 0xfffffffeu;
@@ -55,8 +56,8 @@ public:
     std::vector<Edge> edges;
     std::vector<std::uint32_t> sourceVertices; ///< of each vertex: its number in the tetra set
     std::vector<std::uint32_t> sourceTetrahedra;
-    /// Records of recordSize() values: those of the tetra set, positions relative to the origin, and
-    /// one value more that belongs to whoever slices.
+    /// Records of recordSize() values: those of the tetra set, positions relative to the origin,
+    /// and one value more that belongs to whoever slices.
     std::vector<double> records;
     std::vector<Place> places; ///< one per tetrahedron where there are clip boxes, else empty
 
@@ -77,8 +78,8 @@ public:
 
     /// Expects a valid set.
     void build(const TetraSet& set, const glm::dvec3& origin);
-    /// Finds every tetrahedron's place. Boxes are in the frame of clipField(), less the origin where
-    /// that is the position.
+    /// Finds every tetrahedron's place. Boxes are in the frame of clipField(), less the origin
+    /// where that is the position.
     void place(const BoxIndex& boxes);
 
 private:
@@ -90,6 +91,13 @@ private:
     glm::dvec3 _origin{0.0};
     std::vector<std::uint64_t> _codes; ///< scratch of sortTetrahedra()
     std::vector<std::uint32_t> _stamps, _local;
+    /// Number of the edge between two vertices of a block, as stamped by the block.
+    struct EdgeEntry
+    {
+        std::uint32_t block;
+        std::uint16_t edge;
+    };
+    std::vector<EdgeEntry> _edgeTable;
 };
 
 } // namespace core

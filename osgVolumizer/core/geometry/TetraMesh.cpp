@@ -40,7 +40,8 @@ double orientation(const TetraSet& set, std::size_t t)
 double volume(const TetraSet& set)
 {
     double six = 0.0;
-    for (std::size_t t = 0; t < set.tetraCount(); ++t) six += std::abs(orientation(set, t));
+    for (std::size_t t = 0; t < set.tetraCount(); ++t)
+        six += std::abs(orientation(set, t));
     return six / 6.0;
 }
 
@@ -74,7 +75,8 @@ Adjacency findAdjacency(const TetraSet& set)
     r.neighbours.assign(set.tetraCount(), {-1, -1, -1, -1});
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t j = i + 1;
-        while (j < faces.size() && faces[j].vertices == faces[i].vertices) ++j;
+        while (j < faces.size() && faces[j].vertices == faces[i].vertices)
+            ++j;
         if (j - i == 2) {
             const FaceKey &a = faces[i], &b = faces[i + 1];
             r.neighbours[a.tetrahedron][a.face] = static_cast<std::int32_t>(b.tetrahedron);
@@ -120,7 +122,8 @@ Result<glm::dmat4> positionToVoxel(const TetraSet& set, std::size_t t)
     const glm::dvec3 v0 = set.vertices.voxelCoordinate(set.indices[4 * t]);
     for (int i = 0; i < 3; ++i) {
         p[i] = corner(set, t, i + 1) - p0;
-        v[i] = set.vertices.voxelCoordinate(set.indices[4 * t + static_cast<std::size_t>(i) + 1]) - v0;
+        v[i] =
+            set.vertices.voxelCoordinate(set.indices[4 * t + static_cast<std::size_t>(i) + 1]) - v0;
     }
     const double size = glm::length(p[0]) * glm::length(p[1]) * glm::length(p[2]);
     if (!(std::abs(glm::determinant(p)) > 1e-14 * size))
@@ -140,8 +143,8 @@ VisibilityOrder visibilityOrder(const TetraSet& set, const Adjacency& adjacency,
     const auto side = [&](std::size_t t, int i) {
         // Positive where the eye is on the outer side of the face opposite vertex i.
         const glm::dvec3 a = corner(set, t, OPPOSITE[i][0]);
-        const glm::dvec3 normal = glm::cross(corner(set, t, OPPOSITE[i][1]) - a,
-                                             corner(set, t, OPPOSITE[i][2]) - a);
+        const glm::dvec3 normal =
+            glm::cross(corner(set, t, OPPOSITE[i][1]) - a, corner(set, t, OPPOSITE[i][2]) - a);
         const double s = glm::dot(normal, glm::dvec3(eye) - eye.w * a);
         return orientation(set, t) < 0.0 ? -s : s;
     };
@@ -150,22 +153,24 @@ VisibilityOrder visibilityOrder(const TetraSet& set, const Adjacency& adjacency,
     for (std::size_t t = 0; t < n; ++t) {
         const glm::dvec3 c =
             0.25 * (corner(set, t, 0) + corner(set, t, 1) + corner(set, t, 2) + corner(set, t, 3));
-        depth[t] = eye.w != 0.0 ? glm::length(c - glm::dvec3(eye) / eye.w)
-                                : -glm::dot(c, glm::dvec3(eye));
+        depth[t] =
+            eye.w != 0.0 ? glm::length(c - glm::dvec3(eye) / eye.w) : -glm::dot(c, glm::dvec3(eye));
     }
-    // t is before its neighbour over face i, seen from the eye, if the eye is inside that face. Decided
-    // once per face, by the tetrahedron with the lower number, so that both sides agree.
+    // t is before its neighbour over face i, seen from the eye, if the eye is inside that face.
+    // Decided once per face, by the tetrahedron with the lower number, so that both sides agree.
     const auto isBehind = [&](std::size_t t, std::size_t i) {
         const auto other = static_cast<std::size_t>(adjacency.neighbours[t][i]);
         if (t < other) return side(t, static_cast<int>(i)) > 0.0;
         std::size_t back = 0;
-        while (adjacency.neighbours[other][back] != static_cast<std::int32_t>(t)) ++back;
+        while (adjacency.neighbours[other][back] != static_cast<std::int32_t>(t))
+            ++back;
         return side(other, static_cast<int>(back)) < 0.0;
     };
     const auto isBefore = [&](std::size_t t, std::size_t i) {
         const auto other = static_cast<std::size_t>(adjacency.neighbours[t][i]);
         std::size_t back = 0;
-        while (adjacency.neighbours[other][back] != static_cast<std::int32_t>(t)) ++back;
+        while (adjacency.neighbours[other][back] != static_cast<std::int32_t>(t))
+            ++back;
         return isBehind(other, back);
     };
     for (std::size_t t = 0; t < n; ++t)
@@ -195,7 +200,8 @@ VisibilityOrder visibilityOrder(const TetraSet& set, const Adjacency& adjacency,
             ready.pop();
             if (done[t]) continue;
         } else {
-            while (done[byDepth[farthest]]) ++farthest;
+            while (done[byDepth[farthest]])
+                ++farthest;
             t = byDepth[farthest];
             r.cyclic.push_back(t);
         }

@@ -40,12 +40,13 @@ struct Adjacency
 /// By vertex indices.
 OSGVOLUMIZER_CORE_EXPORT Adjacency findAdjacency(const TetraSet& set);
 
-/// Vertex indices of the triangles with a tetrahedron on one side only, counter-clockwise from outside.
+/// Vertex indices of the triangles with a tetrahedron on one side only, counter-clockwise from
+/// outside.
 OSGVOLUMIZER_CORE_EXPORT std::vector<std::array<TetraSet::Index, 3>>
 boundaryFaces(const TetraSet& set, const Adjacency& adjacency);
 
-/// Affine map from positions to voxel coordinates inside a tetrahedron. Expects voxel coordinates in
-/// the format. SINGULAR_MATRIX for a tetrahedron without volume, INDEX_OUT_OF_RANGE.
+/// Affine map from positions to voxel coordinates inside a tetrahedron. Expects voxel coordinates
+/// in the format. SINGULAR_MATRIX for a tetrahedron without volume, INDEX_OUT_OF_RANGE.
 OSGVOLUMIZER_CORE_EXPORT Result<glm::dmat4> positionToVoxel(const TetraSet& set,
                                                             std::size_t tetrahedron);
 
@@ -57,12 +58,12 @@ struct VisibilityOrder
     std::vector<std::uint32_t> cyclic;
 };
 
-/// Meshed polyhedra visibility ordering (Williams, "Visibility-ordering meshed polyhedra", ACM TOG 11,
-/// 1992): over every shared face the tetrahedron on the eye's side comes later. Exact for convex
-/// meshes without cycles; among tetrahedra that no face relates, those with farther centres come first
-/// (his heuristic for meshes with holes). Where a cycle leaves no choice, the farthest goes first and
-/// is reported.
-/// \param eye homogeneous, in the position frame: w = 0 is the direction towards the eye
+/// Meshed polyhedra visibility ordering (Williams, "Visibility-ordering meshed polyhedra", ACM TOG
+/// 11, 1992): over every shared face the tetrahedron on the eye's side comes later. Exact for
+/// convex meshes without cycles; among tetrahedra that no face relates, those with farther centres
+/// come first (his heuristic for meshes with holes). Where a cycle leaves no choice, the farthest
+/// goes first and is reported. \param eye homogeneous, in the position frame: w = 0 is the
+/// direction towards the eye
 OSGVOLUMIZER_CORE_EXPORT VisibilityOrder visibilityOrder(const TetraSet& set,
                                                          const Adjacency& adjacency,
                                                          const glm::dvec4& eye);
@@ -87,7 +88,7 @@ private:
     struct Node
     {
         Box3d bounds;
-        std::uint32_t begin = 0, end = 0; ///< of _order
+        std::uint32_t begin = 0, end = 0;  ///< of _order
         std::uint32_t left = 0, right = 0; ///< children; 0 in a leaf
     };
     std::uint32_t build(std::uint32_t begin, std::uint32_t end, int depth);

@@ -35,10 +35,12 @@ Status TetraSet::validate() const
                                               " indices are no multiple of four."};
     const auto good = [](double v) { return std::abs(v) <= MAX_MAGNITUDE; };
     std::size_t bad = 0; // counted without a branch, so that the loop runs at the speed of memory
-    for (const double v : values) bad += good(v) ? 0u : 1u;
+    for (const double v : values)
+        bad += good(v) ? 0u : 1u;
     if (bad > 0) {
         std::size_t i = 0;
-        while (good(values[i])) ++i;
+        while (good(values[i]))
+            ++i;
         return {ErrorCode::VALUE_INVALID,
                 "TetraSet: vertex " + std::to_string(i / stride) + " has value " +
                     std::to_string(values[i]) + " in field " + std::to_string(i % stride) + ".",

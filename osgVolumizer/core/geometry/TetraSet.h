@@ -74,9 +74,10 @@ public:
     bool empty() const { return indices.empty(); }
     /// Bounds of the positions of all vertices that are referred to, in the object frame.
     Box3d bounds() const;
-    /// Refuses NaN, infinite and absurd (MAX_MAGNITUDE) values, indices out of range, and a number of indices that is not a
-    /// multiple of four; the status names the first offender. Degenerate and inverted tetrahedra are
-    /// fine: the former have no volume, the latter count like any other.
+    /// Refuses NaN, infinite and absurd (MAX_MAGNITUDE) values, indices out of range, and a number
+    /// of indices that is not a multiple of four; the status names the first offender. Degenerate
+    /// and inverted tetrahedra are fine: the former have no volume, the latter count like any
+    /// other.
     Status validate() const;
 };
 

@@ -78,9 +78,11 @@ void RecordPolygon::clipPlane(int field, const Plane& plane)
     const glm::dvec3& n = plane.normal;
     const bool above = n.x != 0.0 ? n.x > 0.0 : n.y != 0.0 ? n.y > 0.0 : n.z >= 0.0;
     const Plane upper = above ? plane : Plane{-n, -plane.offset};
-    clip([field, &upper](
-             const double* r) { return upper.distance({r[field], r[field + 1], r[field + 2]}); },
-         0.0, above, [](double*) {});
+    clip(
+        [field, &upper](const double* r) {
+            return upper.distance({r[field], r[field + 1], r[field + 2]});
+        },
+        0.0, above, [](double*) {});
 }
 
 void RecordPolygon::clipBox(int field, const Box3d& box)
@@ -91,8 +93,9 @@ void RecordPolygon::clipBox(int field, const Box3d& box)
         extent.expand({r[0], r[1], r[2]});
     }
     for (int a = 0; a < 3; ++a) {
-        // What lies in a plane of the box as a whole belongs to the upper side. A polygon that ends at
-        // a plane is not cut by it, also where rounding has laid all of a remnant into the plane.
+        // What lies in a plane of the box as a whole belongs to the upper side. A polygon that ends
+        // at a plane is not cut by it, also where rounding has laid all of a remnant into the
+        // plane.
         if (extent.max[a] < box.min[a] || extent.min[a] >= box.max[a]) _corners.clear();
         if (extent.min[a] < box.min[a]) clipField(field + a, box.min[a], true);
         if (extent.max[a] > box.max[a]) clipField(field + a, box.max[a], false);

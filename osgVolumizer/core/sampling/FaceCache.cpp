@@ -17,7 +17,10 @@ namespace core {
 
 namespace {
 
-glm::dvec3 depthGradient(const View& v) { return {v.toEye[0][2], v.toEye[1][2], v.toEye[2][2]}; }
+glm::dvec3 depthGradient(const View& v)
+{
+    return {v.toEye[0][2], v.toEye[1][2], v.toEye[2][2]};
+}
 
 /// Faces and what they were made from.
 struct Made
@@ -32,15 +35,15 @@ struct Made
     bool eyeOutside = false;
 };
 
-/// Whether the eye lies outside the set along the axis, so that the order of the planes cannot depend
-/// on it. Bounds and eye in the position frame; explicit voxel coordinates may be bent, and never count
-/// as outside.
+/// Whether the eye lies outside the set along the axis, so that the order of the planes cannot
+/// depend on it. Bounds and eye in the position frame; explicit voxel coordinates may be bent, and
+/// never count as outside.
 bool eyeOutside(const TetraSet& set, const Box3d& bounds, const View& view, int axis)
 {
     if (set.vertices.format().voxelCoordinateSize == 3) return false;
     const Result<glm::dvec4> eye = eyePosition(view);
-    return eye.ok() && (eye->w == 0.0 || (*eye)[axis] < bounds.min[axis] ||
-                        (*eye)[axis] > bounds.max[axis]);
+    return eye.ok() &&
+           (eye->w == 0.0 || (*eye)[axis] < bounds.min[axis] || (*eye)[axis] > bounds.max[axis]);
 }
 
 bool planesAcrossView(const SamplingParameters& p)
@@ -103,8 +106,7 @@ bool FaceCache::Private::Entry::reusable(const std::shared_ptr<const TetraSet>& 
         return eyePosition(view).ok();
     }
     if (planesAlongAxis(parameters)) {
-        const Result<ViewAxis> axis =
-            closestAxis(view, bounds.center(), parameters.voxelSize);
+        const Result<ViewAxis> axis = closestAxis(view, bounds.center(), parameters.voxelSize);
         return axis.ok() && axis->axis == made.axis.axis && axis->sign == made.axis.sign &&
                made.eyeOutside && eyeOutside(*set, bounds, view, axis->axis);
     }
@@ -191,8 +193,14 @@ std::size_t FaceCache::viewCount() const
     return _private->entries.size();
 }
 
-std::uint64_t FaceCache::polygonizations() const { return _private->polygonizations; }
-std::uint64_t FaceCache::reuses() const { return _private->reuses; }
+std::uint64_t FaceCache::polygonizations() const
+{
+    return _private->polygonizations;
+}
+std::uint64_t FaceCache::reuses() const
+{
+    return _private->reuses;
+}
 
 } // namespace core
 } // namespace osgVolumizer

@@ -32,14 +32,20 @@ SurfaceLattice viewLattice(const ViewFamily& family, double nearest, double fart
 {
     const double h = family.wantedSpacing;
     if (family.mode != SamplingMode::AXIS_ALIGNED) {
-        if (std::isfinite(family.viewFar))
-            return makeLattice(family.viewNear, family.viewFar, h, maximum);
-        const double layers = std::ceil(std::max(1.0, (farthest - family.viewNear) / h));
-        return makeLattice(family.viewNear, family.viewNear + layers * h, h, maximum);
+        // Spread in absolute depths, so that all sets get the same surfaces to the bit.
+        double farDepth = family.viewFar;
+        if (!std::isfinite(farDepth)) {
+            const double reach = farthest + family.anchorDepth - family.viewNear;
+            farDepth = family.viewNear + std::ceil(std::max(1.0, reach / h)) * h;
+        }
+        SurfaceLattice lattice = makeLattice(family.viewNear, farDepth, h, maximum);
+        lattice.farDepth -= family.anchorDepth;
+        return lattice;
     }
     const double low = nearest + family.anchorDepth, high = farthest + family.anchorDepth;
     double spacing = h * std::max(1.0, std::ceil((high - low) / h / maximum));
-    while (std::ceil(high / spacing) - std::floor(low / spacing) > maximum) spacing *= 2.0;
+    while (std::ceil(high / spacing) - std::floor(low / spacing) > maximum)
+        spacing *= 2.0;
     SurfaceLattice lattice;
     lattice.spacing = spacing;
     lattice.farDepth = std::ceil(high / spacing) * spacing - family.anchorDepth;
@@ -49,17 +55,15 @@ SurfaceLattice viewLattice(const ViewFamily& family, double nearest, double fart
 
 /// The half-spaces that hold all that a view can show: the four sides, and what is before the eye.
 /// Near and far are left out, because OSG settles them only after the cull.
-std::vector<Plane> visibleHalfSpaces(const View& view, const glm::dvec3& origin)
+void visibleHalfSpaces(const View& view, const glm::dvec3& origin, std::vector<Plane>& planes)
 {
     const glm::dmat4 m = view.projection * view.toEye;
     const auto row = [&](int r) { return glm::dvec4(m[0][r], m[1][r], m[2][r], m[3][r]); };
-    std::vector<Plane> planes;
     for (const glm::dvec4& p :
          {row(3) + row(0), row(3) - row(0), row(3) + row(1), row(3) - row(1), row(3)}) {
         const glm::dvec3 n(p);
         planes.push_back({n, p.w + n.x * origin.x + n.y * origin.y + n.z * origin.z});
     }
-    return planes;
 }
 
 } // namespace
@@ -110,7 +114,10 @@ Status Polygonizer::setTetraSet(std::shared_ptr<const TetraSet> tetraSet)
     return {};
 }
 
-const std::shared_ptr<const TetraSet>& Polygonizer::tetraSet() const { return _private->tetraSet; }
+const std::shared_ptr<const TetraSet>& Polygonizer::tetraSet() const
+{
+    return _private->tetraSet;
+}
 
 Status Polygonizer::setClipBoxes(const std::vector<Box3d>& clipBoxes)
 {
@@ -122,7 +129,10 @@ Status Polygonizer::setClipBoxes(const std::vector<Box3d>& clipBoxes)
     return {};
 }
 
-void Polygonizer::setExecutor(Executor* executor) { _private->executor = executor; }
+void Polygonizer::setExecutor(Executor* executor)
+{
+    _private->executor = executor;
+}
 
 Status Polygonizer::Private::prepareBlocks(const glm::dvec3& origin)
 {
@@ -134,7 +144,8 @@ Status Polygonizer::Private::prepareBlocks(const glm::dvec3& origin)
     if (!placesCurrent) {
         std::vector<Box3d> shifted = boxes.boxes();
         if (tetraSet->vertices.format().voxelCoordinateSize != 3)
-            for (Box3d& b : shifted) b = {b.min - origin, b.max - origin};
+            for (Box3d& b : shifted)
+                b = {b.min - origin, b.max - origin};
         if (Status s = localBoxes.build(shifted); !s) return s;
         blocks.place(localBoxes);
         placesCurrent = true;
@@ -187,11 +198,37 @@ Status Polygonizer::Private::measure()
     nearest = std::numeric_limits<double>::infinity();
     farthest = -nearest;
     double poison = 0.0; // NaN as soon as one depth is not finite
-    for (std::size_t i = 0; i < b.sourceVertices.size(); ++i) {
-        const double d = Slicer::depthOf(plan, b.record(i), b.sourceVertices[i]);
-        poison += d - d;
-        nearest = std::min(nearest, d);
-        farthest = std::max(farthest, d);
+    const auto look = [&](const TetraBlocks::Block& block) {
+        for (std::uint32_t i = block.firstVertex; i < block.firstVertex + block.vertexCount; ++i) {
+            const double d = Slicer::depthOf(plan, b.record(i), b.sourceVertices[i]);
+            poison += d - d;
+            nearest = std::min(nearest, d);
+            farthest = std::max(farthest, d);
+        }
+    };
+    // The extremes lie in few blocks: those that reach farthest come first, the others are looked into
+    // only if they may reach farther still.
+    struct Range
+    {
+        double nearest, farthest;
+    };
+    std::size_t nearBlock = 0, farBlock = 0;
+    Range nearRange{nearest, farthest}, farRange{nearest, farthest};
+    for (std::size_t i = 0; i < b.blocks.size(); ++i) {
+        Range r{};
+        Slicer::depthRange(plan, b.blocks[i], r.nearest, r.farthest);
+        poison += std::isnan(r.nearest) || std::isnan(r.farthest) ? r.nearest - r.farthest : 0.0;
+        if (r.nearest < nearRange.nearest) nearRange = r, nearBlock = i;
+        if (r.farthest > farRange.farthest) farRange = r, farBlock = i;
+    }
+    if (!b.blocks.empty()) {
+        look(b.blocks[nearBlock]);
+        look(b.blocks[farBlock]);
+    }
+    for (const TetraBlocks::Block& block : b.blocks) {
+        Range r{};
+        Slicer::depthRange(plan, block, r.nearest, r.farthest);
+        if (r.nearest < nearest || r.farthest > farthest) look(block);
     }
     if (!(poison == 0.0))
         return {ErrorCode::VALUE_INVALID, "polygonize: the depth of a vertex is not finite."};
@@ -217,7 +254,8 @@ Status Polygonizer::Private::cut(const SurfaceLattice& lattice, double eyeDepth,
         surfaceDepths[k] =
             lattice.farDepth - (plan.firstSurface + static_cast<int>(k) + 0.5) * lattice.spacing;
     if (!std::isnan(eyeDepth)) orderByDistance(surfaceDepths, eyeDepth, order);
-    for (std::size_t k = 0; k < n; ++k) rank[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
+    for (std::size_t k = 0; k < n; ++k)
+        rank[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
     plan.rank = rank.data();
 
     if (Status s = slicer.run(plan, executor, out); !s) return s;
@@ -250,7 +288,7 @@ Status Polygonizer::polygonize(const View& view, const SamplingParameters& param
     }
     p.plan.primitive = parameters.space == SamplingSpace::PRIMITIVE;
     p.plan.visible.clear();
-    if (parameters.cullToView) p.plan.visible = visibleHalfSpaces(view, parameters.outputOrigin);
+    if (parameters.cullToView) visibleHalfSpaces(view, parameters.outputOrigin, p.plan.visible);
     if (Status s = p.measure(); !s) return s;
     const SurfaceLattice lattice =
         parameters.space == SamplingSpace::VIEW_VOLUME
@@ -258,7 +296,8 @@ Status Polygonizer::polygonize(const View& view, const SamplingParameters& param
             : makeLattice(p.nearest, p.farthest, family->wantedSpacing, parameters.maximumSamples);
     if (Status s = p.cut(lattice, family->eyeDepth, out); !s) return s;
     const double sign = family->axis >= 0 ? family->gradient[family->axis] : 1.0;
-    for (double& d : out.surfaceDepths) d = sign * (d + family->anchorDepth);
+    for (double& d : out.surfaceDepths)
+        d = sign * (d + family->anchorDepth);
     out.axis = family->axis;
     return {};
 }
@@ -275,14 +314,15 @@ Status Polygonizer::polygonize(const SurfaceFamily& family, const SamplingParame
                                               " must be positive."};
     if (Status s = p.prepareBlocks(parameters.outputOrigin); !s) return s;
     const auto depth = [&](const double* position, const double* voxel) {
-        return family.depth({position[0], position[1], position[2]}, {voxel[0], voxel[1], voxel[2]});
+        return family.depth({position[0], position[1], position[2]},
+                            {voxel[0], voxel[1], voxel[2]});
     };
     if (Status s = p.useFunction(depth, tolerance * spacing, parameters.outputOrigin); !s) return s;
     p.plan.primitive = false;
     p.plan.visible.clear();
     if (Status s = p.measure(); !s) return s;
-    if (Status s = p.cut(makeLattice(p.nearest, p.farthest, spacing, parameters.maximumSamples), NONE,
-                         out);
+    if (Status s = p.cut(makeLattice(p.nearest, p.farthest, spacing, parameters.maximumSamples),
+                         NONE, out);
         !s)
         return s;
     out.axis = -1;
@@ -296,8 +336,8 @@ Status Polygonizer::Private::cutPlane(const Plane& plane, const glm::dvec3& orig
     const glm::dvec3& n = plane.normal;
     const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
     if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(plane.offset / length))
-        return {ErrorCode::VALUE_INVALID, "polygonizeMPR: the plane's normal has length " +
-                                              std::to_string(length) + "."};
+        return {ErrorCode::VALUE_INVALID,
+                "polygonizeMPR: the plane's normal has length " + std::to_string(length) + "."};
     SamplingParameters parameters;
     parameters.outputOrigin = origin;
     if (Status s = parameters.validate(); !s) return s;

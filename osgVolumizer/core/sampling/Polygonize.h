@@ -97,8 +97,8 @@ public:
     Status polygonize(const SurfaceFamily& family, const SamplingParameters& parameters,
                       PolygonizedFaces& out);
 
-    /// Multi-planar reformatting: the cross section with one plane of the position frame, per brick.
-    /// Faces run counter-clockwise about the plane's normal.
+    /// Multi-planar reformatting: the cross section with one plane of the position frame, per
+    /// brick. Faces run counter-clockwise about the plane's normal.
     Status polygonizeMPR(const Plane& plane, const glm::dvec3& outputOrigin, PolygonizedFaces& out);
     /// The cross section with a polygon: simple, planar to 1e-6 of its size, convex or not, in the
     /// position frame. VALUE_INVALID for any other.

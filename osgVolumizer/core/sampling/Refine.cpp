@@ -102,10 +102,10 @@ Status Refiner::refine(const TetraSet& in, const Box3d& bounds, const Function& 
             }
             if (split < 0) {
                 out.indices.insert(out.indices.end(), t, t + 4);
-                if (out.tetraCount() > MAX_TETRAHEDRA)
+                if (out.tetraCount() > in.tetraCount() + MAX_NEW_TETRAHEDRA)
                     return {ErrorCode::TOO_LARGE,
                             "polygonize: the tolerance of " + std::to_string(tolerance) +
-                                " of a layer needs more than 2^20 tetrahedra.",
+                                " of a layer needs more than 2^20 tetrahedra besides.",
                             static_cast<std::int64_t>(i / 4)};
                 continue;
             }

@@ -18,13 +18,14 @@ namespace core {
 class Refiner
 {
 public:
-    /// Splits no edge shorter than this part of the bounds' diagonal, and makes no more tetrahedra.
+    /// Splits no edge shorter than this part of the bounds' diagonal.
     static constexpr double SHORTEST_EDGE = 1.0 / 4096.0;
-    static constexpr std::size_t MAX_TETRAHEDRA = std::size_t(1) << 20;
+    /// Makes no more tetrahedra than this beyond those there are.
+    static constexpr std::size_t MAX_NEW_TETRAHEDRA = std::size_t(1) << 20;
 
     /// \param value function of (position, voxel coordinate), each three doubles
     /// \param values receives the function at the vertices of `out`
-    /// TOO_LARGE where the tolerance needs more than MAX_TETRAHEDRA.
+    /// TOO_LARGE where the tolerance needs more than MAX_NEW_TETRAHEDRA.
     using Function = std::function<double(const double*, const double*)>;
     Status refine(const TetraSet& in, const Box3d& bounds, const Function& value, double tolerance,
                   TetraSet& out, std::vector<double>& values);

@@ -26,7 +26,8 @@ glm::dvec3 PolygonSet::normal(std::size_t face) const
 double PolygonSet::area() const
 {
     double r = 0.0;
-    for (std::size_t f = 0; f < faceCount(); ++f) r += 0.5 * glm::length(normal(f));
+    for (std::size_t f = 0; f < faceCount(); ++f)
+        r += 0.5 * glm::length(normal(f));
     return r;
 }
 
@@ -66,7 +67,8 @@ void PolygonSet::appendTo(FaceSet& faces, const glm::dvec3& origin) const
         faces.vertices.push_back(static_cast<float>(values[i] - o));
     }
     const std::uint32_t firstIndex = faces.faceOffsets.back();
-    for (std::uint32_t i = 0; i < faceOffsets.back(); ++i) faces.indices.push_back(first + i);
+    for (std::uint32_t i = 0; i < faceOffsets.back(); ++i)
+        faces.indices.push_back(first + i);
     for (std::size_t f = 1; f < faceOffsets.size(); ++f)
         faces.faceOffsets.push_back(firstIndex + faceOffsets[f]);
 }
@@ -90,8 +92,8 @@ Status sample(const TetraSet& set, std::size_t tetrahedron, const SurfaceFamily&
     double depth[4];
     for (int i = 0; i < 4; ++i) {
         const glm::dvec3 p = vertices.position(t[i]);
-        depth[i] = family.depth(p, format.voxelCoordinateSize == 3 ? vertices.voxelCoordinate(t[i])
-                                                                   : p);
+        depth[i] =
+            family.depth(p, format.voxelCoordinateSize == 3 ? vertices.voxelCoordinate(t[i]) : p);
         if (!std::isfinite(depth[i]))
             return {ErrorCode::VALUE_INVALID, "sample: the depth of a vertex is not finite.", t[i]};
     }
@@ -99,7 +101,8 @@ Status sample(const TetraSet& set, std::size_t tetrahedron, const SurfaceFamily&
     const int stride = format.stride();
     for (const double surface : depths) {
         unsigned mask = 0; // near side: smaller depth
-        for (int i = 0; i < 4; ++i) mask |= depth[i] < surface ? 1u << i : 0u;
+        for (int i = 0; i < 4; ++i)
+            mask |= depth[i] < surface ? 1u << i : 0u;
         const TetraCase& which = TETRA_CASES[mask];
         if (which.count == 0) continue;
         polygon.reset(stride);
@@ -174,8 +177,8 @@ void slice(const ConvexPolytope& polytope, const Plane& plane, std::vector<glm::
         const double dp = plane.distance(p), dq = plane.distance(q);
         polygon.push_back(p + (dp / (dp - dq)) * (q - p));
         std::size_t next = 0;
-        while (next < crossings.size() && (crossings[next].from[0] != c.from[1] ||
-                                           crossings[next].to[0] != c.to[1]))
+        while (next < crossings.size() &&
+               (crossings[next].from[0] != c.from[1] || crossings[next].to[0] != c.to[1]))
             ++next;
         if (next == crossings.size() || next == 0) return;
         at = next;

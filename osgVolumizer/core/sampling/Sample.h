@@ -63,8 +63,8 @@ OSGVOLUMIZER_CORE_EXPORT void clip(const PolygonSet& in, const std::vector<Plane
 
 /// sample() and clip() in one, for convex primitives: the cross section of a polytope (such as a
 /// tetrahedron or box that is clipped already) with the plane, counter-clockwise about its normal.
-/// `polygon` is replaced; empty where they do not meet. Points are made from the end of an edge below
-/// the plane to the end above.
+/// `polygon` is replaced; empty where they do not meet. Points are made from the end of an edge
+/// below the plane to the end above.
 OSGVOLUMIZER_CORE_EXPORT void slice(const ConvexPolytope& polytope, const Plane& plane,
                                     std::vector<glm::dvec3>& polygon);
 

@@ -40,8 +40,8 @@ struct OSGVOLUMIZER_CORE_EXPORT SamplingParameters
     /// SPHERICAL and other curved families: how far a face may lie from its surface, in multiples
     /// of the distance between surfaces.
     double curvedTolerance = 0.1;
-    /// Leave out groups of tetrahedra that lie wholly outside the sides of the view volume, or behind the
-    /// eye. Surfaces stay where they are.
+    /// Leave out groups of tetrahedra that lie wholly outside the sides of the view volume, or
+    /// behind the eye. Surfaces stay where they are.
     bool cullToView = false;
 
     bool operator==(const SamplingParameters& o) const

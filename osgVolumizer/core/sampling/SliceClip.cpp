@@ -18,7 +18,8 @@ void append(const SlicePlan& plan, const RecordPolygon& face, std::size_t bin, d
     chunk.vertices.resize(at + face.size() * stride);
     float* to = chunk.vertices.data() + at;
     for (std::size_t i = 0; i < face.size(); ++i)
-        for (std::size_t k = 0; k < stride; ++k) *to++ = static_cast<float>(face.record(i)[k]);
+        for (std::size_t k = 0; k < stride; ++k)
+            *to++ = static_cast<float>(face.record(i)[k]);
     chunk.bins.push_back(static_cast<std::uint32_t>(bin));
     chunk.sizes.push_back(static_cast<std::uint16_t>(face.size()));
     if (plan.primitive) chunk.spacings.push_back(static_cast<float>(spacing));
@@ -73,14 +74,17 @@ void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
         last = std::max(1, static_cast<int>(std::ceil((high - low) * (1.0 - 1e-9))));
         scale = last / (high - low);
         first = 0;
-        for (double& v : f) v = (v - low) * scale;
+        for (double& v : f)
+            v = (v - low) * scale;
     }
     int passed[4];
-    for (int i = 0; i < 4; ++i) passed[i] = surfacesPassed(f[i], first, last);
+    for (int i = 0; i < 4; ++i)
+        passed[i] = surfacesPassed(f[i], first, last);
     const int end = *std::max_element(passed, passed + 4);
     for (int k = *std::min_element(passed, passed + 4); k < end; ++k) {
         unsigned mask = 0;
-        for (int i = 0; i < 4; ++i) mask |= passed[i] > k ? 1u << i : 0u;
+        for (int i = 0; i < 4; ++i)
+            mask |= passed[i] > k ? 1u << i : 0u;
         const TetraCase& which = TETRA_CASES[mask];
         chunk.whole.reset(static_cast<int>(stride));
         for (std::size_t c = 0; c < static_cast<std::size_t>(which.count); ++c) {
@@ -91,8 +95,9 @@ void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
         chunk.whole.close();
         int surface = k;
         if (plan.primitive)
-            surface = std::min(plan.firstSurface + plan.surfaceCount - 1,
-                               std::max(plan.firstSurface, static_cast<int>(low + (k + 0.5) / scale)));
+            surface =
+                std::min(plan.firstSurface + plan.surfaceCount - 1,
+                         std::max(plan.firstSurface, static_cast<int>(low + (k + 0.5) / scale)));
         const double spacing = plan.lattice.spacing / scale;
         if (!plan.pieces) {
             clipFace(plan, surface, spacing, chunk);

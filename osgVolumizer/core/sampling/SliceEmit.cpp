@@ -46,7 +46,8 @@ OSGVOLUMIZER_INLINE void writeAll(const double* records, std::size_t stride,
         const double weight = between.weight;
         if constexpr (S == 3) {
             // The fourth value is overwritten by the next point, but not at the end.
-            if (i + 1 < count) interpolate4(to, a, b, nearest, weight, 16);
+            if (i + 1 < count)
+                interpolate4(to, a, b, nearest, weight, 16);
             else
                 interpolate4(to, a, b, nearest, weight, 12);
         } else if constexpr (S > 3) {
@@ -66,12 +67,24 @@ OSGVOLUMIZER_INLINE void writeAny(const double* records, std::size_t stride,
                                   const std::uint64_t* points, std::size_t count, float* to)
 {
     switch (stride) {
-    case 3: writeAll<3>(records, 3, points, count, to); break;
-    case 6: writeAll<6>(records, 6, points, count, to); break;
-    case 7: writeAll<7>(records, 7, points, count, to); break;
-    case 9: writeAll<9>(records, 9, points, count, to); break;
-    case 10: writeAll<10>(records, 10, points, count, to); break;
-    default: writeAll<0>(records, stride, points, count, to); break;
+    case 3:
+        writeAll<3>(records, 3, points, count, to);
+        break;
+    case 6:
+        writeAll<6>(records, 6, points, count, to);
+        break;
+    case 7:
+        writeAll<7>(records, 7, points, count, to);
+        break;
+    case 9:
+        writeAll<9>(records, 9, points, count, to);
+        break;
+    case 10:
+        writeAll<10>(records, 10, points, count, to);
+        break;
+    default:
+        writeAll<0>(records, stride, points, count, to);
+        break;
     }
 }
 

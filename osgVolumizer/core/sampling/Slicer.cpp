@@ -3,7 +3,9 @@
 #include "TetraCases.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <limits>
 #include <new>
 #include <string>
 
@@ -15,8 +17,14 @@ namespace {
 constexpr std::size_t MAX_BINS = std::size_t(1) << 24;
 constexpr std::size_t BLOCKS_PER_CHUNK = 8; ///< fewer are not worth a task
 
-/// Corners of the face of a case: 4 where two vertices are on either side, else 3.
-std::uint32_t faceSize(std::uint64_t mask) { return 3u + ((0x1668u >> mask) & 1u); }
+/// What one face of each case adds to its bin: 4 indices where two vertices are on either side, else
+/// 3. The cases without a face do not occur.
+constexpr std::array<Slicer::Count, 16> FACE_COUNTS = [] {
+    std::array<Slicer::Count, 16> counts{};
+    for (std::size_t mask = 0; mask < 16; ++mask)
+        counts[mask] = Slicer::count(1, static_cast<std::uint32_t>(TETRA_CASES[mask].count));
+    return counts;
+}();
 
 bool outside(const Box3d& box, const std::vector<Plane>& visible)
 {
@@ -37,12 +45,33 @@ bool flushFace(const TetraBlocks& blocks, const TetraBlocks::Block& block,
     for (int k = 0; k < 4; ++k)
         f[k] = blocks.record(block.firstVertex + t.v[k])[blocks.recordSize() - 1];
     for (int i = 0; i < 4; ++i)
-        if ((faces >> i & 1u) && f[(i + 1) % 4] == f[(i + 2) % 4] && f[(i + 1) % 4] == f[(i + 3) % 4])
+        if ((faces >> i & 1u) && f[(i + 1) % 4] == f[(i + 2) % 4] &&
+            f[(i + 1) % 4] == f[(i + 3) % 4])
             return true;
     return false;
 }
 
 } // namespace
+
+void Slicer::depthRange(const SlicePlan& plan, const TetraBlocks::Block& block, double& nearest,
+                        double& farthest)
+{
+    nearest = -std::numeric_limits<double>::infinity();
+    farthest = std::numeric_limits<double>::infinity();
+    if (plan.depths) return;
+    const Box3d& box =
+        plan.depthField == plan.blocks->clipField() ? block.clipBounds : block.bounds;
+    double middle = 0.0, half = 0.0, size = 0.0;
+    for (int a = 0; a < 3; ++a) {
+        const double g = plan.gradient[a], center = 0.5 * (box.min[a] + box.max[a]);
+        middle += g * (center - plan.corner[a]);
+        half += std::abs(g) * 0.5 * (box.max[a] - box.min[a]);
+        size += std::abs(g) * (std::abs(center) + std::abs(plan.corner[a]));
+    }
+    half += 1e-14 * (size + half);
+    nearest = middle - half;
+    farthest = middle + half;
+}
 
 void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t blockIndex)
 {
@@ -52,12 +81,18 @@ void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block
     const std::size_t size = blocks.recordSize();
     const int first = plan.firstSurface, last = first + plan.surfaceCount;
     const double scale = 1.0 / plan.lattice.spacing;
+    double nearest, farthest;
+    depthRange(plan, block, nearest, farthest);
+    const double layerMargin = 1e-9; // of a layer, for the rounding of what follows
+    if (!plan.primitive &&
+        surfacesPassed((plan.lattice.farDepth - farthest) * scale - layerMargin, first, last) ==
+            surfacesPassed((plan.lattice.farDepth - nearest) * scale + layerMargin, first, last))
+        return;
     int* passed = _passed.data() + block.firstVertex;
     int lowest = last, highest = first;
     double* record = blocks.record(block.firstVertex);
     for (std::uint32_t i = 0; i < block.vertexCount; ++i, record += size) {
-        const double depth =
-            depthOf(plan, record, blocks.sourceVertices[block.firstVertex + i]);
+        const double depth = depthOf(plan, record, blocks.sourceVertices[block.firstVertex + i]);
         const double f = (plan.lattice.farDepth - depth) * scale;
         record[size - 1] = f;
         passed[i] = surfacesPassed(f, first, last);
@@ -93,8 +128,8 @@ void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block
 
 void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
 {
-    const std::size_t bins = static_cast<std::size_t>(plan.surfaceCount) *
-                             static_cast<std::size_t>(plan.brickCount);
+    const std::size_t bins =
+        static_cast<std::size_t>(plan.surfaceCount) * static_cast<std::size_t>(plan.brickCount);
     chunk.fast.assign(bins, 0);
     chunk.clipped.assign(bins, 0);
     chunk.entryCount = 0;
@@ -106,19 +141,22 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
     chunk.spacings.clear();
     const TetraBlocks& blocks = *plan.blocks;
     const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
+    const int* const rank = plan.rank - plan.firstSurface;
     for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
         const std::size_t start = chunk.entryCount;
         countBlock(plan, chunk, b);
         chunk.blockEntries.push_back(chunk.entryCount);
-        const std::uint32_t firstTetra = blocks.blocks[b].firstTetra;
-        for (std::size_t i = start; i < chunk.entryCount; ++i) {
-            const std::uint64_t e = chunk.entries[i];
-            const auto surface = static_cast<std::size_t>((e >> 32)) -
-                                 static_cast<std::size_t>(plan.firstSurface);
-            std::size_t bin = static_cast<std::uint32_t>(plan.rank[surface]) * brickCount;
-            if (!blocks.places.empty())
-                bin += blocks.places[firstTetra + (e >> 8 & 0xffffffu)] & TetraBlocks::BOX_MASK;
-            chunk.fast[bin] += count(1, faceSize(e & 15u));
+        const TetraBlocks::Place* const places =
+            blocks.places.empty() ? nullptr : blocks.places.data() + blocks.blocks[b].firstTetra;
+        Count* const counts = chunk.fast.data();
+        const std::uint64_t* const end = chunk.entries.data() + chunk.entryCount;
+        for (const std::uint64_t* entry = chunk.entries.data() + start; entry != end; ++entry) {
+            const std::uint64_t e = *entry;
+            std::size_t bin = static_cast<std::uint32_t>(rank[e >> 32]);
+            if (places)
+                bin = bin * brickCount +
+                      (places[static_cast<std::uint32_t>(e) >> 8] & TetraBlocks::BOX_MASK);
+            counts[bin] += FACE_COUNTS[e & 15u];
         }
     }
     for (std::size_t f = 0; f < chunk.bins.size(); ++f)
@@ -130,8 +168,10 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
     std::uint64_t indices = 0, faces = 0, vertices = 0;
     const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
     for (std::size_t c = 0; c < chunkCount; ++c) {
-        for (const Count n : _chunks[c].fast) indices += indexCount(n), faces += faceCount(n);
-        for (const Count n : _chunks[c].clipped) indices += indexCount(n), faces += faceCount(n);
+        for (const Count n : _chunks[c].fast)
+            indices += indexCount(n), faces += faceCount(n);
+        for (const Count n : _chunks[c].clipped)
+            indices += indexCount(n), faces += faceCount(n);
         const std::size_t own = _chunks[c].vertexCount;
         _chunks[c].vertexCount = vertices;
         vertices += own;
@@ -168,14 +208,55 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
     return true;
 }
 
+namespace {
+
+struct Target
+{
+    std::uint32_t* indices;
+    std::uint32_t* faceOffsets;
+};
+
+/// Writes the faces of one block. All that the loop needs is in local variables, since the compiler has
+/// to expect that its stores change anything else.
+template <bool Bricks>
+void emitEntries(const SlicePlan& plan, Slicer::Chunk& chunk, const TetraBlocks::Block& block,
+                 std::size_t begin, std::size_t end, Target target)
+{
+    const TetraBlocks& blocks = *plan.blocks;
+    const TetraBlocks::TetraEdges* const tetraEdges = blocks.tetraEdges.data() + block.firstTetra;
+    const TetraBlocks::Place* const places =
+        Bricks ? blocks.places.data() + block.firstTetra : nullptr;
+    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
+    const std::uint32_t* const edgePoints = chunk.edgePoints.data();
+    const int* const rank = plan.rank - plan.firstSurface;
+    Slicer::Count* const cursors = chunk.fast.data();
+    const std::uint64_t* const last = chunk.entries.data() + end;
+    for (const std::uint64_t* entry = chunk.entries.data() + begin; entry != last; ++entry) {
+        const std::uint64_t e = *entry;
+        const auto surface = static_cast<std::uint32_t>(e >> 32);
+        const std::uint32_t t = static_cast<std::uint32_t>(e) >> 8;
+        const TetraCase& which = TETRA_CASES[e & 15u];
+        std::size_t bin = static_cast<std::uint32_t>(rank[surface]);
+        if (Bricks) bin = bin * brickCount + (places[t] & TetraBlocks::BOX_MASK);
+        const Slicer::Count cursor = cursors[bin];
+        cursors[bin] = cursor + Slicer::count(1, static_cast<std::uint32_t>(which.count));
+        target.faceOffsets[Slicer::faceCount(cursor)] = Slicer::indexCount(cursor);
+        std::uint32_t* const to = target.indices + Slicer::indexCount(cursor);
+        const std::uint16_t* const edges = tetraEdges[t].e;
+        to[0] = edgePoints[edges[which.edge[0]]] + surface;
+        to[1] = edgePoints[edges[which.edge[1]]] + surface;
+        to[2] = edgePoints[edges[which.edge[2]]] + surface;
+        // Of a triangle the last corner is the third once more.
+        to[which.count - 1] = edgePoints[edges[which.edge[3]]] + surface;
+    }
+}
+
+} // namespace
+
 void Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
 {
     const TetraBlocks& blocks = *plan.blocks;
-    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
-    std::uint32_t* const indices = out.faces.indices.data();
-    std::uint32_t* const faceOffsets = out.faces.faceOffsets.data();
-    Count* const cursors = chunk.fast.data();
-    const int* const rank = plan.rank - plan.firstSurface;
+    const Target target{out.faces.indices.data(), out.faces.faceOffsets.data()};
     std::size_t i = 0;
     for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
         const std::size_t end = chunk.blockEntries[b - chunk.firstBlock];
@@ -187,29 +268,10 @@ void Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& ou
                     out.faces.vertices.data() + chunk.vertexCount * (blocks.recordSize() - 1));
         chunk.vertexCount += chunk.pointCount;
 
-        const TetraBlocks::TetraEdges* tetraEdges = blocks.tetraEdges.data() + block.firstTetra;
-        const TetraBlocks::Place* places =
-            blocks.places.empty() ? nullptr : blocks.places.data() + block.firstTetra;
-        const std::uint32_t* edgePoints = chunk.edgePoints.data();
-        const std::uint64_t* entries = chunk.entries.data();
-        for (; i < end; ++i) {
-            const std::uint64_t e = entries[i];
-            const auto surface = static_cast<std::uint32_t>(e >> 32);
-            const std::size_t t = e >> 8 & 0xffffffu;
-            const TetraCase& which = TETRA_CASES[e & 15u];
-            std::size_t bin = std::size_t(static_cast<std::uint32_t>(rank[surface])) * brickCount;
-            if (places) bin += places[t] & TetraBlocks::BOX_MASK;
-            const Count cursor = cursors[bin];
-            cursors[bin] = cursor + count(1, static_cast<std::uint32_t>(which.count));
-            faceOffsets[faceCount(cursor)] = indexCount(cursor);
-            std::uint32_t* to = indices + indexCount(cursor);
-            const std::uint16_t* edges = tetraEdges[t].e;
-            to[0] = edgePoints[edges[which.edge[0]]] + surface;
-            to[1] = edgePoints[edges[which.edge[1]]] + surface;
-            to[2] = edgePoints[edges[which.edge[2]]] + surface;
-            // Of a triangle the last corner is the third once more.
-            to[which.count - 1] = edgePoints[edges[which.edge[3]]] + surface;
-        }
+        if (blocks.places.empty()) emitEntries<false>(plan, chunk, block, i, end, target);
+        else
+            emitEntries<true>(plan, chunk, block, i, end, target);
+        i = end;
     }
     emitClipped(plan, chunk, out);
 }
@@ -233,8 +295,8 @@ void Slicer::emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& 
 
 Status Slicer::run(const SlicePlan& plan, Executor* executor, PolygonizedFaces& out)
 try {
-    const std::size_t bins = static_cast<std::size_t>(plan.surfaceCount) *
-                             static_cast<std::size_t>(plan.brickCount);
+    const std::size_t bins =
+        static_cast<std::size_t>(plan.surfaceCount) * static_cast<std::size_t>(plan.brickCount);
     if (bins > MAX_BINS)
         return {ErrorCode::TOO_LARGE, "polygonize: " + std::to_string(plan.surfaceCount) +
                                           " surfaces times " + std::to_string(plan.brickCount) +
@@ -243,14 +305,16 @@ try {
     const std::size_t blockCount = plan.blocks->blocks.size();
     std::size_t chunkCount = executor ? static_cast<std::size_t>(executor->concurrency()) : 1;
     chunkCount = std::min(chunkCount, blockCount / BLOCKS_PER_CHUNK);
-    chunkCount = std::max<std::size_t>(1, std::min(chunkCount, MAX_BINS / std::max<std::size_t>(1, bins)));
+    chunkCount =
+        std::max<std::size_t>(1, std::min(chunkCount, MAX_BINS / std::max<std::size_t>(1, bins)));
     if (_chunks.size() < chunkCount) _chunks.resize(chunkCount);
     for (std::size_t c = 0; c < chunkCount; ++c) {
         _chunks[c].firstBlock = static_cast<std::uint32_t>(blockCount * c / chunkCount);
         _chunks[c].endBlock = static_cast<std::uint32_t>(blockCount * (c + 1) / chunkCount);
     }
     const auto forAll = [&](const auto& task) {
-        if (chunkCount == 1) task(0);
+        if (chunkCount == 1)
+            task(0);
         else
             executor->run(static_cast<int>(chunkCount), std::cref(task));
     };

@@ -19,7 +19,8 @@ struct SlicePlan
 {
     TetraBlocks* blocks = nullptr; ///< the spare value of each record receives the layer coordinate
     const BoxIndex* boxes = nullptr;
-    /// Depth of a vertex: dot(gradient, field - corner), unless `depths` gives it per source vertex.
+    /// Depth of a vertex: dot(gradient, field - corner), unless `depths` gives it per source
+    /// vertex.
     int depthField = 0;
     glm::dvec3 gradient{0.0};
     glm::dvec3 corner{0.0};
@@ -37,10 +38,10 @@ struct SlicePlan
     std::vector<Plane> visible;
 };
 
-/// Cuts blocks of tetrahedra in two passes: the first finds out which surfaces meet which tetrahedra
-/// and counts, the second writes points and faces to their final places. In a block every point is
-/// made once, on its edge, and shared by the faces around that edge. Tetrahedra that need clipping
-/// are cut in the first pass already and copied in the second. All memory is kept.
+/// Cuts blocks of tetrahedra in two passes: the first finds out which surfaces meet which
+/// tetrahedra and counts, the second writes points and faces to their final places. In a block
+/// every point is made once, on its edge, and shared by the faces around that edge. Tetrahedra that
+/// need clipping are cut in the first pass already and copied in the second. All memory is kept.
 class Slicer
 {
 public:
@@ -55,6 +56,11 @@ public:
         return plan.gradient.x * (p[0] - plan.corner.x) + plan.gradient.y * (p[1] - plan.corner.y) +
                plan.gradient.z * (p[2] - plan.corner.z);
     }
+
+    /// Bounds of the depths in a block, by one box test; a little wider than rounding needs. All depths
+    /// there may be, where they are not those of planes.
+    static void depthRange(const SlicePlan& plan, const TetraBlocks::Block& block, double& nearest,
+                           double& farthest);
 
     /// Faces and indices of a bin in one number, so that one addition counts both.
     using Count = std::uint64_t;
@@ -98,7 +104,8 @@ private:
     void emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
 
     std::vector<Chunk> _chunks;
-    std::vector<int> _passed; ///< per vertex of the blocks: surfaces on the near side of which it is
+    std::vector<int>
+        _passed; ///< per vertex of the blocks: surfaces on the near side of which it is
 };
 
 /// Appends an entry to the chunk for every surface that meets one of `count` tetrahedra of a block,
@@ -117,13 +124,13 @@ void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* 
 void writePoints(const TetraBlocks& blocks, const TetraBlocks::Block& block,
                  const Slicer::Chunk& chunk, float* to);
 
-/// Cuts one tetrahedron the general way, clips the faces to the boxes and appends them to the chunk.
-/// Expects the layer coordinates in the records.
+/// Cuts one tetrahedron the general way, clips the faces to the boxes and appends them to the
+/// chunk. Expects the layer coordinates in the records.
 void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
                const TetraBlocks::Tetra& tetra, Slicer::Chunk& chunk);
 
-/// Number of surfaces on the near side of which a vertex with layer coordinate f lies. Surface k is at
-/// k + 1/2, and a vertex on it belongs to its far side. The subtraction is exact wherever the
+/// Number of surfaces on the near side of which a vertex with layer coordinate f lies. Surface k is
+/// at k + 1/2, and a vertex on it belongs to its far side. The subtraction is exact wherever the
 /// result matters: for f in [1/4, 1] by Sterbenz' lemma, above because f - 1/2 has no finer
 /// digits than f.
 inline int surfacesPassed(double f, int first, int last)

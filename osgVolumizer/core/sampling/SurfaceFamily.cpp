@@ -124,8 +124,8 @@ Result<ViewFamily> ViewFamily::create(const TetraSet& set, const Box3d& bounds, 
         const double farDepth = f.mode == SamplingMode::SPHERICAL
                                     ? farthestCorner(view.projection, range->farDepth)
                                     : range->farDepth;
-        f.viewNear = range->nearDepth - f.anchorDepth;
-        f.viewFar = farDepth - f.anchorDepth;
+        f.viewNear = range->nearDepth;
+        f.viewFar = farDepth;
     }
     if (!(f.wantedSpacing > 0.0) || !std::isfinite(f.wantedSpacing) ||
         !std::isfinite(f.anchorDepth))

@@ -54,7 +54,7 @@ struct OSGVOLUMIZER_CORE_EXPORT ViewFamily
     /// AXIS_ALIGNED, eye beside the planes: depth of the eye relative to the anchor; surfaces are
     /// then ordered by their distance from it. NaN elsewhere.
     double eyeDepth = 0.0;
-    double viewNear = 0.0, viewFar = 0.0; ///< VIEW_VOLUME: extent of the lattice, relative depths
+    double viewNear = 0.0, viewFar = 0.0; ///< VIEW_VOLUME: extent of the lattice, absolute
 
     static Result<ViewFamily> create(const TetraSet& tetraSet, const Box3d& bounds,
                                      const View& view, const SamplingParameters& parameters);
