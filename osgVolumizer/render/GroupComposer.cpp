@@ -124,12 +124,15 @@ std::vector<core::ScheduledInterval> GroupComposer::schedule(const Region& regio
     std::vector<core::ScheduleMember> members;
     core::ScheduleLimits limits;
     for (const PreparedVolume& volume : _volumes) {
-        members.push_back({volume.instance->depth, true, volume.looks[WHOLE]->step});
+        members.push_back({volume.instance->depth, true, _step});
         // A slice has no inside that a layer could split.
         if (volume.sliced) limits.surfaceSteps = 1.0;
     }
-    for (std::size_t s : region.surfaces)
+    for (std::size_t s : region.surfaces) {
         members.push_back({_surfaces[s].view.depth, false, 0.0});
+        // What leaves no depth cannot split a segment either.
+        if (!leavesDepth(_surfaces[s])) limits.surfaceSteps = 1.0;
+    }
     return core::depthSchedule(members, limits);
 }
 
@@ -165,6 +168,14 @@ void GroupComposer::compose(std::vector<OrderedLeaf>& leaves)
     for (const Region& region : findRegions()) composeRegion(region, leaves);
 }
 
+// Other drawables may set the depth mask themselves, as particle systems do.
+bool GroupComposer::leavesDepth(const Surface& surface)
+{
+    const osg::Drawable* drawable = surface.leaf->leaf().getDrawable();
+    return (drawable->asGeometry() || dynamic_cast<const osgText::TextBase*>(drawable)) &&
+           !drawable->getDrawCallback();
+}
+
 // Sorting draws every surface twice per layer; worth it until triangles cost more than intervals do.
 bool GroupComposer::isWorthSorting(const Region& region) const
 {
@@ -173,10 +184,7 @@ bool GroupComposer::isWorthSorting(const Region& region) const
         if (volume.sliced) return false;
     std::size_t triangles = 0;
     for (std::size_t s : region.surfaces) {
-        const osg::Drawable* drawable = _surfaces[s].leaf->leaf().getDrawable();
-        // Others may set the depth mask themselves, as particle systems do, and leave no depth.
-        const bool obeysState = drawable->asGeometry() || dynamic_cast<const osgText::TextBase*>(drawable);
-        if (!obeysState || drawable->getDrawCallback()) return false;
+        if (!leavesDepth(_surfaces[s])) return false;
         triangles += _surfaces[s].mesh ? _surfaces[s].mesh->triangleCount() : UNKNOWN_TRIANGLES;
     }
     return triangles <= MAXIMUM_SORTED_TRIANGLES;

@@ -88,6 +88,7 @@ private:
     void prepareVolumes();
     void prepareSurfaces(std::vector<OrderedLeaf>& leaves);
     std::vector<Region> findRegions() const;
+    static bool leavesDepth(const Surface& surface);
     bool isWorthSorting(const Region& region) const;
     void composeSorted(const Region& region, std::vector<OrderedLeaf>& leaves);
     void composeVolumes(const std::vector<core::ScheduledInterval>& intervals,
