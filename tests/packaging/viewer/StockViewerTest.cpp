@@ -8,6 +8,9 @@
 #include <osgDB/ReadFile>
 #include <osgUtil/Optimizer>
 
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
 #include <cmath>
 #include <filesystem>
 #include <tuple>
@@ -59,7 +62,7 @@ protected:
             usleep(500000);
             auto now = display.read();
             if (!now) continue;
-            if (now->pixels == last.pixels && colourCount(*now) > 16) return last;
+            if (last.pixels == now->pixels && colourCount(*now) > 16) return last;
             last = std::move(*now);
         }
         std::ifstream stream(log);
