@@ -28,7 +28,7 @@ public:
             std::map<std::string, std::string>{}, folder + "/Xvfb.log");
         close(ends[1]);
         // The server writes its number when it is ready, or goes.
-        for (char c; read(ends[0], &c, 1) == 1 && c != '\n';)
+        for (char c; ::read(ends[0], &c, 1) == 1 && c != '\n';)
             _number += c;
         close(ends[0]);
     }
