@@ -1,6 +1,7 @@
 #include "DepthLayers.h"
 
 #include "ScissorScope.h"
+#include "SharedStateSets.h"
 #include "VolumeProgram.h"
 
 #include <osg/ColorMask>
@@ -100,15 +101,16 @@ osg::Object* LayerLeaf::cloneType() const
 
 osg::ref_ptr<osg::StateSet> LayerLeaf::stateSet(Step step)
 {
-    static const osg::ref_ptr<osg::StateSet> sort = screenState("sort.frag.glsl", false);
-    static const osg::ref_ptr<osg::StateSet> fill = screenState("fill.frag.glsl", true);
-    static const osg::ref_ptr<osg::StateSet> clear = []() {
+    if (step == SORT)
+        return sharedStateSet(SharedState::SORT, []() { return screenState("sort.frag.glsl", false); });
+    if (step == BEGIN_RANK || step == BEGIN_REST)
+        return sharedStateSet(SharedState::FILL, []() { return screenState("fill.frag.glsl", true); });
+    return sharedStateSet(SharedState::CLEAR, []() {
         osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
         set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE);
         set->setAttribute(new osg::Stencil, FORCE); // its write mask is all ones
         return set;
-    }();
-    return step == SORT ? sort : step == BEGIN_RANK || step == BEGIN_REST ? fill : clear;
+    });
 }
 
 void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
@@ -172,12 +174,9 @@ void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
         state.haveAppliedTextureAttribute(unit, StateAttribute::TEXTURE);
 }
 
-osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index,
-                                              const osg::Depth* effectiveDepth)
+osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index)
 {
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-    const double zNear = effectiveDepth ? effectiveDepth->getZNear() : 0.0;
-    const double zFar = effectiveDepth ? effectiveDepth->getZFar() : 1.0;
     const auto stencil = [&set](osg::Stencil::Function function, int reference) {
         osg::ref_ptr<osg::Stencil> s = new osg::Stencil;
         s->setFunction(function, reference, 0xff);
@@ -193,8 +192,9 @@ osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index,
         function = osg::Depth::LESS;
         stencil(osg::Stencil::LEQUAL, LayerLeaf::LAYER_COUNT); // passes where the count has come this far
     }
+    // True depths, whatever range the leaf asks for: the volume is compared with them.
     set->setAttributeAndModes(
-        new osg::Depth(function, zNear, zFar, step == LayerLeaf::BEGIN_CAPTURE), FORCE);
+        new osg::Depth(function, 0.0, 1.0, step == LayerLeaf::BEGIN_CAPTURE), FORCE);
     return set;
 }
 

@@ -15,6 +15,9 @@ struct Bytes
 {
     std::vector<unsigned char> data;
     unsigned elementSize = 1; ///< 1, 2, 4 or 8
+
+    /// To little-endian, as text has it, or back.
+    void swapUnlessLittleEndian();
 };
 
 /// The state of one object as named fields: what a scene file holds of it, in whichever encoding.
