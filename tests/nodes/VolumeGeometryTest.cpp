@@ -48,7 +48,9 @@ TEST(VolumeGeometry, BoxesAreFilledByTheirTetrahedra)
         EXPECT_NEAR(volumeOf(*set), e.volumes * 5.0 * 3.0 * 6.0, 1e-11);
         const core::Box3d bounds = set->bounds();
         EXPECT_EQ(bounds.min, glm::dvec3(-1.0, 2.0, 3.0));
-        if (e.how != VolumeGeometry::ENCLOSING) EXPECT_EQ(bounds.max, glm::dvec3(4.0, 5.0, 9.0));
+        if (e.how != VolumeGeometry::ENCLOSING) {
+            EXPECT_EQ(bounds.max, glm::dvec3(4.0, 5.0, 9.0));
+        }
     }
 }
 
