@@ -10,11 +10,12 @@ namespace osgVolumizer {
 
 namespace {
 
-Status refuse(const VolumeAppearance& appearance, const char* field, double value, const char* expected)
+Status refuse(const VolumeAppearance& appearance, const char* field, double value,
+              const char* expected)
 {
-    Status status(ErrorCode::VALUE_INVALID, "VolumeAppearance \"" + appearance.getName() + "\": " + field +
-                                                " is " + std::to_string(value) + ", expected " +
-                                                expected);
+    Status status(ErrorCode::VALUE_INVALID, "VolumeAppearance \"" + appearance.getName() +
+                                                "\": " + field + " is " + std::to_string(value) +
+                                                ", expected " + expected);
     reportError(status);
     return status;
 }
@@ -36,14 +37,20 @@ VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp&
 
 VolumeAppearance::~VolumeAppearance() = default;
 
-void VolumeAppearance::setVoxels(Voxels* voxels) { _voxels = voxels; }
+void VolumeAppearance::setVoxels(Voxels* voxels)
+{
+    _voxels = voxels;
+}
 
 void VolumeAppearance::setLookupTable(LookupTable* table)
 {
     _lookupTable = table ? table : new LookupTable;
 }
 
-int VolumeAppearance::getRequiredOverlap() const { return _interpolation == CUBIC ? 3 : 1; }
+int VolumeAppearance::getRequiredOverlap() const
+{
+    return _interpolation == CUBIC ? 3 : 1;
+}
 
 Status VolumeAppearance::setSamplingPeriod(const osg::Vec3d& periodVoxel)
 {

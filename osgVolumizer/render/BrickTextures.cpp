@@ -57,8 +57,14 @@ double signedOffset(VoxelType type)
 }
 
 // NaN and infinite values.
-bool isHole(float v) { return !std::isfinite(v); }
-bool isHole(std::uint16_t half) { return (half & 0x7c00u) == 0x7c00u; }
+bool isHole(float v)
+{
+    return !std::isfinite(v);
+}
+bool isHole(std::uint16_t half)
+{
+    return (half & 0x7c00u) == 0x7c00u;
+}
 
 template <class T>
 bool hasHoles(const unsigned char* data, std::size_t count)
@@ -72,7 +78,8 @@ template <class T>
 void fillHoles(unsigned char* data, std::size_t count, T lowest)
 {
     auto* values = reinterpret_cast<T*>(data);
-    std::replace_if(values, values + count, [](T v) { return isHole(v); }, lowest);
+    std::replace_if(
+        values, values + count, [](T v) { return isHole(v); }, lowest);
 }
 
 // The texels of a brick: the block itself where nothing has to change.

@@ -20,12 +20,13 @@ namespace {
 const VolumeAppearance* nearestAppearance(const osg::NodePath& path)
 {
     for (auto node = path.rbegin(); node != path.rend(); ++node)
-        if (const auto* appearance = dynamic_cast<const VolumeAppearance*>(*node)) return appearance;
+        if (const auto* appearance = dynamic_cast<const VolumeAppearance*>(*node))
+            return appearance;
     return nullptr;
 }
 
-// What osgUtil::CullVisitor does for every drawable before it looks at it: false if the user's callback
-// or the frustum rejects it.
+// What osgUtil::CullVisitor does for every drawable before it looks at it: false if the user's
+// callback or the frustum rejects it.
 bool passesOsgCulling(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
 {
     if (osg::Callback* callback = geometry.getCullCallback()) {
@@ -75,8 +76,8 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, const TableTextu
         const BrickTexture texture = textures->get(voxels, i);
         if (!texture.texture) continue;
         const glm::vec3 size(place.samples.size());
-        volume.bricks.push_back({i, box, texture, 1.0f / size,
-                                 (0.5f - glm::vec3(place.samples.min)) / size});
+        volume.bricks.push_back(
+            {i, box, texture, 1.0f / size, (0.5f - glm::vec3(place.samples.min)) / size});
     }
 }
 
@@ -104,8 +105,8 @@ bool usesSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepa
             appearance.getSamplingMode() == SamplingMode::VIEWPORT_ALIGNED);
 }
 
-// Depth between samples: one period, per voxel axis, along the view axis; longer where that would be more
-// samples than allowed.
+// Depth between samples: one period, per voxel axis, along the view axis; longer where that would
+// be more samples than allowed.
 double sampleDepth(const glm::dmat4& toEye, const core::Box3d& bounds,
                    const core::SamplingParameters& sampling)
 {
@@ -140,8 +141,8 @@ glm::dvec3 pixelMargin(const glm::dmat4& toEye, const core::Box3d& bounds,
     return std::isfinite(margin.x + margin.y + margin.z) ? margin : glm::dvec3(0.0);
 }
 
-// Runs of values need scalars that vary, and the ray in the voxel frame, which slices of a deformed volume
-// do not know.
+// Runs of values need scalars that vary, and the ray in the voxel frame, which slices of a deformed
+// volume do not know.
 VolumeAppearance::Lookup lookupOf(const VolumeAppearance& appearance,
                                   const PreparedGeometry& prepared)
 {
@@ -152,15 +153,13 @@ VolumeAppearance::Lookup lookupOf(const VolumeAppearance& appearance,
 
 // How the shader gets a colour out of a brick.
 void setInterpolation(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
-                      const TableTexture& table, double voxelsPerSample,
-                      ProgramFeatures& features)
+                      const TableTexture& table, double voxelsPerSample, ProgramFeatures& features)
 {
     if (!features.voxels) return;
     const auto interpolation = usedInterpolation(appearance);
     features.nearest = interpolation == VolumeAppearance::NEAREST;
     features.cubic = interpolation == VolumeAppearance::CUBIC;
-    features.exact =
-        interpolation == VolumeAppearance::LINEAR && appearance.getExactFiltering();
+    features.exact = interpolation == VolumeAppearance::LINEAR && appearance.getExactFiltering();
     // Of nearest samples the two orders give the same.
     features.before = appearance.getLookup() == VolumeAppearance::BEFORE_INTERPOLATION &&
                       interpolation != VolumeAppearance::NEAREST;
@@ -189,8 +188,7 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
         const glm::dvec2 fraction = texelToRangeFraction(*voxels);
         look->valueToEntry = glm::vec2(fraction * (table.count - 1.0));
     }
-    look->frameToUnits =
-        glm::dmat3(prepared.frameToObject) / appearance.getEffectiveOpacityUnit();
+    look->frameToUnits = glm::dmat3(prepared.frameToObject) / appearance.getEffectiveOpacityUnit();
     look->center = prepared.regionBox.center();
     const glm::dmat4 toEye = toGlm(*volume.frameToEye);
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;
@@ -248,7 +246,7 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     const osg::Camera* camera = visitor.getCurrentCamera();
     if (voxels) {
         table = appearance->tableTextures().get(*appearance->getLookupTable(), voxels->getRange(),
-                                              lookupOf(*appearance, *volume->prepared));
+                                                lookupOf(*appearance, *volume->prepared));
         selectBricks(*volume, *voxels, table, visitor);
         count(camera, visitor.getFrameStamp(), "osgVolumizer bricks total",
               static_cast<double>(voxels->getLayout().brickCount()));

@@ -26,7 +26,8 @@ bool sameRays(const osg::Matrixd& a, const osg::Matrixd& b)
     return true;
 }
 
-// The Depth attribute that OSG would apply for a graph: the last one on the way down that no override stops.
+// The Depth attribute that OSG would apply for a graph: the last one on the way down that no
+// override stops.
 const osg::Depth* effectiveDepth(const osgUtil::StateGraph* graph)
 {
     std::vector<const osg::StateSet*> path;
@@ -94,9 +95,9 @@ std::optional<ForeignLeaf> ForeignLeaf::examine(osgUtil::RenderLeaf& leaf,
 
 osgUtil::RenderLeaf* ForeignLeaf::copy(osg::StateSet& state) const
 {
-    osg::ref_ptr<osgUtil::RenderLeaf> leaf =
-        new osgUtil::RenderLeaf(const_cast<osg::Drawable*>(_leaf->getDrawable()), _leaf->_projection,
-                                _leaf->_modelview, _leaf->_depth, _leaf->_traversalOrderNumber);
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
+        const_cast<osg::Drawable*>(_leaf->getDrawable()), _leaf->_projection, _leaf->_modelview,
+        _leaf->_depth, _leaf->_traversalOrderNumber);
     _leaf->_parent->find_or_insert(&state)->addLeaf(leaf);
     return leaf.get();
 }
@@ -124,7 +125,8 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
         return rangeNear + (rangeFar - rangeNear) * 0.5 * (z + 1.0);
     };
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-    const unsigned force = StateAttribute::ON | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
+    const unsigned force =
+        StateAttribute::ON | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
     const osg::Depth::Function function = layer   ? osg::Depth::LESS
                                           : depth ? depth->getFunction()
                                                   : osg::Depth::LESS;
@@ -136,9 +138,9 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
     } else {
         set->setAttribute(own, force); // whether there is a depth test at all stays as it was
     }
-    osg::ref_ptr<osgUtil::RenderLeaf> copy =
-        new osgUtil::RenderLeaf(drawable ? drawable : const_cast<osg::Drawable*>(_leaf->getDrawable()),
-                                projection, _leaf->_modelview, _leaf->_depth, _leaf->_traversalOrderNumber);
+    osg::ref_ptr<osgUtil::RenderLeaf> copy = new osgUtil::RenderLeaf(
+        drawable ? drawable : const_cast<osg::Drawable*>(_leaf->getDrawable()), projection,
+        _leaf->_modelview, _leaf->_depth, _leaf->_traversalOrderNumber);
     _leaf->_parent->find_or_insert(set)->addLeaf(copy);
     return copy.get();
 }

@@ -22,7 +22,10 @@ constexpr std::size_t MAXIMUM_REGIONS = 8;
 constexpr std::size_t MAXIMUM_SORTED_TRIANGLES = 20000, UNKNOWN_TRIANGLES = 1000;
 constexpr double INFINITE_DEPTH = std::numeric_limits<double>::infinity();
 
-double middle(const core::DepthInterval& d) { return 0.5 * (d.nearDepth + d.farDepth); }
+double middle(const core::DepthInterval& d)
+{
+    return 0.5 * (d.nearDepth + d.farDepth);
+}
 
 // Any order that does not depend on the order of nodes.
 bool comesFirst(const VolumeInstance* a, const VolumeInstance* b)
@@ -108,7 +111,8 @@ void GroupComposer::makeLooks(PreparedVolume& volume, const Region& region)
         look->surfaceNormal = volume.sliced->surfaceNormal();
         look->features.spherical = volume.sliced->spherical();
     } else if (!alone()) {
-        look->step = _step; // the same samples in every region, and one for each volume in a thin slab
+        look->step =
+            _step; // the same samples in every region, and one for each volume in a thin slab
     }
     volume.looks[WHOLE] = look;
     for (const Part part : {BEHIND_LAYER, IN_FRONT_OF_LAYER}) {
@@ -136,12 +140,14 @@ std::vector<core::ScheduledInterval> GroupComposer::schedule(const Region& regio
     return core::depthSchedule(members, limits);
 }
 
-// The part of each surface in each interval. Members of the schedule are the volumes, then the region's surfaces.
+// The part of each surface in each interval. Members of the schedule are the volumes, then the
+// region's surfaces.
 void GroupComposer::splitSurfaces(const Region& region,
                                   const std::vector<core::ScheduledInterval>& intervals)
 {
     std::vector<core::DepthInterval> depths;
-    for (const core::ScheduledInterval& interval : intervals) depths.push_back(interval.depth);
+    for (const core::ScheduledInterval& interval : intervals)
+        depths.push_back(interval.depth);
     for (std::size_t i = 0; i < region.surfaces.size(); ++i) {
         Surface& surface = _surfaces[region.surfaces[i]];
         const int member = static_cast<int>(_volumes.size() + i);
@@ -165,7 +171,8 @@ void GroupComposer::compose(std::vector<OrderedLeaf>& leaves)
         composeRegion({}, leaves);
         return;
     }
-    for (const Region& region : findRegions()) composeRegion(region, leaves);
+    for (const Region& region : findRegions())
+        composeRegion(region, leaves);
 }
 
 // Other drawables may set the depth mask themselves, as particle systems do.
@@ -176,7 +183,8 @@ bool GroupComposer::leavesDepth(const Surface& surface)
            !drawable->getDrawCallback();
 }
 
-// Sorting draws every surface twice per layer; worth it until triangles cost more than intervals do.
+// Sorting draws every surface twice per layer; worth it until triangles cost more than intervals
+// do.
 bool GroupComposer::isWorthSorting(const Region& region) const
 {
     if (region.surfaces.empty()) return false;
@@ -213,7 +221,8 @@ void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>
         addLayerStep(Step::BEGIN_SEGMENT, rank, region, depth, leaves);
         segments.clear();
         composeVolumes(intervals, segments);
-        for (const OrderedLeaf& segment : segments) leaves.push_back({depth, segment.leaf});
+        for (const OrderedLeaf& segment : segments)
+            leaves.push_back({depth, segment.leaf});
         addLayerStep(Step::END_SEGMENT, rank, region, depth, leaves);
         const bool rest = rank == LayerLeaf::LAYER_COUNT;
         const int query = rest ? rank - 1 : rank;
@@ -248,12 +257,13 @@ void GroupComposer::addPending(const core::ScheduledInterval& interval, bool rev
     }
 }
 
-void GroupComposer::addLayerStep(LayerLeaf::Step step, int index, const Region& region, double depth,
-                                 std::vector<OrderedLeaf>& leaves)
+void GroupComposer::addLayerStep(LayerLeaf::Step step, int index, const Region& region,
+                                 double depth, std::vector<OrderedLeaf>& leaves)
 {
     const osgUtil::RenderLeaf& beside = *_volumes.front().instance->leaf;
-    osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
-        new LayerLeaf(&_accumulation, step, index, areaOf(region)), beside._projection, beside._modelview);
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf =
+        new osgUtil::RenderLeaf(new LayerLeaf(&_accumulation, step, index, areaOf(region)),
+                                beside._projection, beside._modelview);
     beside._parent->_parent->find_or_insert(LayerLeaf::stateSet(step))->addLeaf(leaf);
     leaves.push_back({depth, leaf.get()});
 }
@@ -270,7 +280,8 @@ void GroupComposer::addSurfaces(LayerLeaf::Step step, int index, const Region& r
 
 void GroupComposer::composeRegion(const Region& region, std::vector<OrderedLeaf>& leaves)
 {
-    for (PreparedVolume& volume : _volumes) makeLooks(volume, region);
+    for (PreparedVolume& volume : _volumes)
+        makeLooks(volume, region);
     if (isWorthSorting(region)) {
         composeSorted(region, leaves);
         return;
@@ -319,7 +330,8 @@ void GroupComposer::composeMixed(const Region& region,
     addPieces(region, intervals, interval, false, leaves);
     for (std::size_t i = order.size(); i-- > 0;) {
         PreparedVolume& volume = _volumes[static_cast<std::size_t>(order[i])];
-        if (!volume.sliced) addVolume(volume, meshes[i], volume.looks[IN_FRONT_OF_LAYER], depth, leaves);
+        if (!volume.sliced)
+            addVolume(volume, meshes[i], volume.looks[IN_FRONT_OF_LAYER], depth, leaves);
     }
 }
 
@@ -354,9 +366,8 @@ void GroupComposer::addVolume(PreparedVolume& volume, std::shared_ptr<const Volu
     ++_counts.volumeLeaves;
     osg::ref_ptr<VolumeDrawable> drawable = new VolumeDrawable;
     drawable->set(std::move(mesh), look);
-    osg::ref_ptr<osgUtil::RenderLeaf> leaf =
-        new osgUtil::RenderLeaf(drawable, instance.leaf->_projection, instance.leaf->_modelview,
-                                static_cast<float>(depth));
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
+        drawable, instance.leaf->_projection, instance.leaf->_modelview, static_cast<float>(depth));
     osgUtil::StateGraph* graph = instance.leaf->_parent;
     if (look->features.key() != instance.look->features.key())
         graph = graph->_parent->find_or_insert(volumeStateSet(look->features));
@@ -396,8 +407,8 @@ glm::ivec4 GroupComposer::areaOf(const Region& region) const
 void GroupComposer::addStep(AccumulationLeaf::Step step, const Region& region, double depth,
                             std::vector<OrderedLeaf>& leaves)
 {
-    leaves.push_back({depth, accumulationLeaf(_accumulation, step,
-                                              *_volumes.front().instance->leaf, areaOf(region))});
+    leaves.push_back({depth, accumulationLeaf(_accumulation, step, *_volumes.front().instance->leaf,
+                                              areaOf(region))});
 }
 
 } // namespace render

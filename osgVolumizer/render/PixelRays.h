@@ -9,16 +9,19 @@
 namespace osgVolumizer {
 namespace render {
 
-/// The rays of all pixels of a view, in a frame of the caller's: origin + t * direction, with t the depth
-/// (-z of the eye frame) measured from `referenceDepth`. Both are linear in window coordinates wherever
-/// depth alone decides clip w, as in every perspective, orthographic, off-axis and mirrored view.
+/// The rays of all pixels of a view, in a frame of the caller's: origin + t * direction, with t the
+/// depth
+/// (-z of the eye frame) measured from `referenceDepth`. Both are linear in window coordinates
+/// wherever depth alone decides clip w, as in every perspective, orthographic, off-axis and
+/// mirrored view.
 struct PixelRays
 {
-    glm::dvec2 windowCenter{0.0};   ///< window coordinates are counted from here, for precision
-    glm::dmat3 origin{1.0};         ///< frame; times (dx, dy, 1)
-    glm::dmat3 direction{1.0};      ///< frame units per eye unit of depth; times (dx, dy, 1)
-    glm::dmat3 directionEye{1.0};   ///< the same, in the eye frame
-    glm::dvec3 clipZOrigin{0.0}, clipZDirection{0.0}; ///< clip z = dot(.., (dx, dy, 1)) + t * dot(..)
+    glm::dvec2 windowCenter{0.0}; ///< window coordinates are counted from here, for precision
+    glm::dmat3 origin{1.0};       ///< frame; times (dx, dy, 1)
+    glm::dmat3 direction{1.0};    ///< frame units per eye unit of depth; times (dx, dy, 1)
+    glm::dmat3 directionEye{1.0}; ///< the same, in the eye frame
+    glm::dvec3 clipZOrigin{0.0},
+        clipZDirection{0.0}; ///< clip z = dot(.., (dx, dy, 1)) + t * dot(..)
     glm::dvec3 clipWOrigin{0.0}, clipWDirection{0.0};
 };
 

@@ -22,8 +22,8 @@ std::map<std::uint64_t, osg::ref_ptr<osg::StateSet>>& sets()
 
 } // namespace
 
-osg::ref_ptr<osg::StateSet>
-sharedStateSet(std::uint64_t key, const std::function<osg::ref_ptr<osg::StateSet>()>& make)
+osg::ref_ptr<osg::StateSet> sharedStateSet(std::uint64_t key,
+                                           const std::function<osg::ref_ptr<osg::StateSet>()>& make)
 {
     std::lock_guard<std::mutex> lock(setsMutex());
     osg::ref_ptr<osg::StateSet>& set = sets()[key];
@@ -34,7 +34,8 @@ sharedStateSet(std::uint64_t key, const std::function<osg::ref_ptr<osg::StateSet
 void releaseSharedStateSets(osg::State* state)
 {
     std::lock_guard<std::mutex> lock(setsMutex());
-    for (const auto& set : sets()) set.second->releaseGLObjects(state);
+    for (const auto& set : sets())
+        set.second->releaseGLObjects(state);
 }
 
 } // namespace render

@@ -69,7 +69,8 @@ RenderOptions parallelView(const osg::Vec3d& towards)
 
 TEST_P(PixelCoverage, OncePerPlane)
 {
-    // A pixel's sum is a whole number of layers: as many as there are planes between its ray's ends.
+    // A pixel's sum is a whole number of layers: as many as there are planes between its ray's
+    // ends.
     _twin.node->setTechnique(VolumeAppearance::SLICES);
     const double opacity = 0.02;
     _twin.node->setLookupTable(makeTable(constantPoints({1.0, 1.0, 1.0, opacity})));

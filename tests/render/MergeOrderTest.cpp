@@ -96,7 +96,8 @@ TEST_F(MergeOrder, NodeOrderFallsOutFasterThanTheStep)
 // The opacity of half of the extinction.
 Points halved(Points points)
 {
-    for (auto& p : points) p.color.a = 1.0 - std::sqrt(1.0 - p.color.a);
+    for (auto& p : points)
+        p.color.a = 1.0 - std::sqrt(1.0 - p.color.a);
     return points;
 }
 
@@ -119,7 +120,8 @@ TEST_F(MergeOrder, TwoHalfDenseCopiesAreTheWhole)
     whole.addVolume(voxels, densePoints());
     halves.addVolume(voxels, halved(densePoints()));
     halves.addVolume(voxels, halved(densePoints()));
-    // Alone a volume is sampled along whole rays, with company in slabs: equal up to the error of sampling.
+    // Alone a volume is sampled along whole rays, with company in slabs: equal up to the error of
+    // sampling.
     whole.setPeriod(0.5);
     halves.setPeriod(0.5);
     const FloatImage one = picture(whole), two = picture(halves);
@@ -127,8 +129,8 @@ TEST_F(MergeOrder, TwoHalfDenseCopiesAreTheWhole)
     EXPECT_LE(support::compare(two, one).maximum, 1e-3);
 }
 
-// Two boxes of geometry that share a region: dense once where one of them is, twice where both are. Cut to
-// share nothing they are the whole; sharing a slice they are what the oracle adds up.
+// Two boxes of geometry that share a region: dense once where one of them is, twice where both are.
+// Cut to share nothing they are the whole; sharing a slice they are what the oracle adds up.
 TEST_F(MergeOrder, TwoPartsOfSpace)
 {
     const osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(SIZE), bumps);
@@ -145,11 +147,11 @@ TEST_F(MergeOrder, TwoPartsOfSpace)
             osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
             appearance->setVoxels(voxels);
             appearance->setLookupTable(makeTable(WARM));
-            appearance->addChild(VolumeGeometry::createBox(
-                osg::BoundingBoxd(box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z)));
+            appearance->addChild(VolumeGeometry::createBox(osg::BoundingBoxd(
+                box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z)));
             parts.adopt(*appearance);
-            oracle::Volume truth = oracle::voxelVolume(gridOf(*voxels), glm::ivec3(SIZE),
-                                                       oracle::Table(WARM));
+            oracle::Volume truth =
+                oracle::voxelVolume(gridOf(*voxels), glm::ivec3(SIZE), oracle::Table(WARM));
             truth.region = oracle::boxRegion(box);
             parts.truth().volumes.push_back(truth);
         }

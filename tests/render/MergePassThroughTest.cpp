@@ -29,8 +29,9 @@ osg::ref_ptr<osg::Group> surfaces()
 {
     osg::ref_ptr<osg::Group> group = new osg::Group;
     group->addChild(makeGeometry(sphereMesh({16, 16, 16}, 9.0, 24, 12), {0.1, 0.9, 0.2, 0.6}));
-    group->addChild(makeGeometry(
-        quadMesh({glm::vec3(-5, -3, 2), {37, 0, 6}, {40, 36, 30}, {-4, 30, 25}}), {0.9, 0.1, 0.2, 0.4}));
+    group->addChild(
+        makeGeometry(quadMesh({glm::vec3(-5, -3, 2), {37, 0, 6}, {40, 36, 30}, {-4, 30, 25}}),
+                     {0.9, 0.1, 0.2, 0.4}));
     return group;
 }
 

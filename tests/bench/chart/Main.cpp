@@ -44,7 +44,8 @@ std::vector<std::string> split(const std::string& text)
 {
     std::vector<std::string> parts;
     std::istringstream in(text);
-    for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
+    for (std::string part; std::getline(in, part, ',');)
+        parts.push_back(part);
     return parts;
 }
 
@@ -74,7 +75,8 @@ bool parse(int argc, char** argv, Arguments& a)
             a.csv = value;
         else if (key == "--steps") {
             a.measure.steps.clear();
-            for (const auto& s : split(value)) a.measure.steps.push_back(std::atof(s.c_str()));
+            for (const auto& s : split(value))
+                a.measure.steps.push_back(std::atof(s.c_str()));
         } else
             return false;
     }
@@ -97,7 +99,8 @@ std::vector<RendererPtr> makeRenderers(const std::vector<std::string>& names)
 std::string joined(const std::vector<double>& values)
 {
     std::ostringstream out;
-    for (double v : values) out << (out.tellp() > 0 ? ";" : "") << v;
+    for (double v : values)
+        out << (out.tellp() > 0 ? ";" : "") << v;
     return out.str();
 }
 

@@ -38,7 +38,12 @@ RendererPtr makeLibraryRenderer(bool slabs, int brickSize = 0);
 /// practical limit. `defines` are lines of march.frag.glsl's options, see there.
 RendererPtr makeBareRenderer(const std::string& defines = "");
 
-enum class OsgVolumeTechnique { FIXED_FUNCTION, RAY_TRACED, MULTIPASS };
+enum class OsgVolumeTechnique
+{
+    FIXED_FUNCTION,
+    RAY_TRACED,
+    MULTIPASS
+};
 RendererPtr makeOsgVolumeRenderer(OsgVolumeTechnique technique);
 
 /// By the name of the command line; null for an unknown one.
