@@ -30,20 +30,21 @@ run_suite() {
     fi
 }
 
-# Fuzz targets are programs named *Fuzz; each starts from its folder of examples, if there is one.
+# Fuzz targets are programs named *Fuzz; each starts from its folder under tests/fuzz/seeds, if any.
 run_fuzz() {
     local target corpus seeds
     cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ \
         -DOSGVOLUMIZER_BUILD_FUZZ=ON -DOSGVOLUMIZER_SANITIZE=fuzzer-no-link,address,undefined || exit 1
     cmake --build build/fuzz -j "$jobs" --target fuzz || exit 1
     for target in build/fuzz/bin/*Fuzz; do
-        corpus=build/fuzz/corpus/$(basename "$target")
-        seeds=tests/fuzz/seeds/$(basename "$target")
+        name=$(basename "$target")
+        corpus=build/fuzz/corpus/$name
+        seeds=tests/fuzz/seeds/$name
         mkdir -p "$corpus"
-        echo "$(basename "$target") for $FUZZ_SECONDS s"
+        [ -d "$seeds" ] || seeds=
+        echo "$name for $FUZZ_SECONDS s"
         "$target" -max_total_time="$FUZZ_SECONDS" -timeout=30 -rss_limit_mb=2048 -verbosity=0 \
-            -artifact_prefix="$corpus/" "$corpus" $([ ! -d "$seeds" ] || echo "$seeds") ||
-            failures+=("$(basename "$target")")
+            -artifact_prefix="$corpus/" "$corpus" $seeds || failures+=("$name")
     done
 }
 
