@@ -14,10 +14,10 @@ namespace osgVolumizer {
 using Progress = std::function<void(double fraction)>;
 
 /// Reads a volume into memory. `name`, found along OSG's data path, is
-/// - a file that OpenImageIO opens: 3D TIFF, several subimages (pages) as slices, DICOM, OpenEXR,
-/// OpenVDB;
-/// - a folder of 2D images, in natural order, or a numbered pattern ("slice%03d.png",
-/// "slice####.png")
+/// - a file that OpenImageIO opens: 3D TIFF, several subimages (pages) as slices, OpenEXR, OpenVDB;
+/// - a DICOM file, uncompressed, with data values (HU for a CT) and its spacing in mm;
+/// - a folder of 2D images, in natural order (DICOM: along the patient), or a numbered pattern
+/// ("slice%03d.png", "slice####.png")
 ///   without gaps;
 /// - a raw file as "name.raw.256,256,110,uint8[,headerBytes[,big|little]]".
 /// Image row 0 is j = 0, the first slice k = 0. Four channels R, G, B, A make RGBA voxels, R, G, B

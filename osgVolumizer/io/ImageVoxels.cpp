@@ -70,6 +70,10 @@ Result<Source> readDeep(ImageFile& file, const PixelFormat& format, const Progre
 
 Result<Source> readImage(const std::string& path, const Progress& progress)
 {
+    if (isDicomFile(path)) {
+        Result<Source> source = readDicom({path}, progress);
+        if (source.status.code != ErrorCode::NOT_SUPPORTED) return source;
+    }
     ImageFile file;
     if (Status status = file.open(path); !status.ok()) return status;
     const Result<PixelFormat> format = file.pixelFormat();
@@ -104,6 +108,10 @@ Result<Source> readImage(const std::string& path, const Progress& progress)
 
 Result<Source> readStack(const std::vector<std::string>& paths, const Progress& progress)
 {
+    if (!paths.empty() && isDicomFile(paths.front())) {
+        Result<Source> source = readDicom(paths, progress);
+        if (source.status.code != ErrorCode::NOT_SUPPORTED) return source;
+    }
     Result<Source> source(Source{});
     PixelFormat format;
     glm::ivec3 size(0);

@@ -21,8 +21,16 @@ Result<Source> readRaw(const RawName& raw, const std::string& path, const Progre
 /// anything else its first channel.
 Result<Source> readImage(const std::string& path, const Progress& progress);
 
-/// The voxels of a stack of 2D images, one slice each, in this order.
+/// The voxels of a stack of 2D images, one slice each, in this order; DICOM files in that of
+/// readDicom().
 Result<Source> readStack(const std::vector<std::string>& paths, const Progress& progress);
+
+/// Whether a file starts as DICOM does.
+bool isDicomFile(const std::string& path);
+/// One DICOM file with any number of frames, or one per slice, sorted along the patient (or by
+/// instance number). Data values with slope and intercept (HU for a CT), in the narrowest type that
+/// holds them; spacing in mm. NOT_SUPPORTED for what io/DicomHeader.h leaves out.
+Result<Source> readDicom(const std::vector<std::string>& paths, const Progress& progress);
 
 /// The images of a folder in natural order ("slice2" before "slice10"): the files of the extensions
 /// that OpenImageIO knows, or, where there are none, those without an extension. Hidden files do

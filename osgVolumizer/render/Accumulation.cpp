@@ -1,6 +1,7 @@
 #include "Accumulation.h"
 
 #include "ScissorScope.h"
+#include "SharedStateSets.h"
 #include "VolumeProgram.h"
 
 #include <osg/Depth>
@@ -105,14 +106,13 @@ void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorF
 // Clearing the layer buffer needs depth writes.
 osg::ref_ptr<osg::StateSet> accumulationStateSet()
 {
-    static const osg::ref_ptr<osg::StateSet> set = []() {
+    return sharedStateSet(SharedState::ACCUMULATION, []() {
         osg::ref_ptr<osg::StateSet> s = new osg::StateSet;
         s->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true),
                                 osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE |
                                     osg::StateAttribute::PROTECTED);
         return s;
-    }();
-    return set;
+    });
 }
 
 // Depth in float, so that what is written back from a texture is what was captured, to the last bit.
@@ -140,7 +140,7 @@ void makeLayerTextures(osg::State& state, AccumulationBuffers& buffers)
     for (int k = 0; k < LayerBuffers::COUNT; ++k) {
         layers.layers[k] = makeDepthStencil(w, h);
         gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.layerFramebuffers[k]);
-        attach(GL_DEPTH_STENCIL_ATTACHMENT_EXT, *layers.layers[k]);
+        attach(GL_DEPTH_STENCIL_ATTACHMENT, *layers.layers[k]);
         glDrawBuffer(GL_NONE);
         glReadBuffer(GL_NONE);
     }
@@ -154,7 +154,7 @@ void makeLayerTextures(osg::State& state, AccumulationBuffers& buffers)
     layers.rankDepth = makeDepthStencil(w, h);
     layers.rankColor = nullptr;
     gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.rankFramebuffer);
-    attach(GL_DEPTH_STENCIL_ATTACHMENT_EXT, *layers.rankDepth);
+    attach(GL_DEPTH_STENCIL_ATTACHMENT, *layers.rankDepth);
 }
 
 } // namespace

@@ -91,6 +91,8 @@ const Damage damages[] = {
     {"TetraSet", "1 1", "1 0", "Version", "0"},
     {"TetraSet", "1 1", "2 1", "Version", "value 1 of 2"},
     {"Technique", "SLABS", "SLUBS", "Technique", "SLUBS"},
+    {"Lookup", "AUTOMATIC", "MAGICAL", "Lookup", "MAGICAL"},
+    {"ExactFiltering", "1 0", "1 2", "ExactFiltering", "2"},
     {"SamplingMode", "VIEWPORT", "SIDEWAYS", "SamplingMode", "SIDEWAYS"},
     {"SamplingPeriod", "1 1 1", "1 0 1", "SamplingPeriod", "0"},
     {"SamplingPeriod", "1 1 1", "1 nan 1", "SamplingPeriod", "nan"},

@@ -20,7 +20,7 @@ std::vector<double> awkwardNumbers()
                                -1.0 / 3.0,
                                6.4e6 + 1e-9,
                                std::nextafter(1.0, 2.0),
-                               std::numeric_limits<double>::max(),
+                               core::TetraSet::MAX_MAGNITUDE,
                                std::numeric_limits<double>::min(),
                                std::numeric_limits<double>::denorm_min(),
                                -0.0,
@@ -28,7 +28,7 @@ std::vector<double> awkwardNumbers()
                                1e22};
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> mantissa(-1.0, 1.0);
-    std::uniform_int_distribution<int> exponent(-300, 300);
+    std::uniform_int_distribution<int> exponent(-300, 95);
     while (values.size() < 60)
         values.push_back(std::ldexp(mantissa(random), exponent(random)));
     return values;
@@ -124,7 +124,9 @@ TEST_P(SerializerTest, AppearancesKeepTheirSampling)
          {VolumeAppearance::AUTOMATIC, VolumeAppearance::SLICES, VolumeAppearance::SLABS})
         for (int i = 0; i < 3; ++i) {
             a->setTechnique(technique);
-            a->setInterpolation(i ? VolumeAppearance::LINEAR : VolumeAppearance::NEAREST);
+            a->setInterpolation(static_cast<VolumeAppearance::Interpolation>(i));
+            a->setLookup(static_cast<VolumeAppearance::Lookup>(i + 1));
+            a->setExactFiltering(i == 1);
             a->setSamplingMode(static_cast<SamplingMode>(i));
             a->setSamplingSpace(static_cast<SamplingSpace>(2 - i));
             ASSERT_TRUE(a->setSamplingPeriod(osg::Vec3d(0.1, 1.0 / 3.0, 7.0 + i)).ok());
@@ -134,6 +136,8 @@ TEST_P(SerializerTest, AppearancesKeepTheirSampling)
             ASSERT_TRUE(b);
             EXPECT_EQ(b->getTechnique(), a->getTechnique());
             EXPECT_EQ(b->getInterpolation(), a->getInterpolation());
+            EXPECT_EQ(b->getLookup(), a->getLookup());
+            EXPECT_EQ(b->getExactFiltering(), a->getExactFiltering());
             EXPECT_EQ(b->getSamplingMode(), a->getSamplingMode());
             EXPECT_EQ(b->getSamplingSpace(), a->getSamplingSpace());
             EXPECT_EQ(b->getSamplingPeriod(), a->getSamplingPeriod());

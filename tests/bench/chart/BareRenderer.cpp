@@ -38,7 +38,7 @@ public:
         if (_context) _context->release();
     }
 
-    std::string name() const override { return _variant.empty() ? "bare march" : "bare " + _variant; }
+    std::string name() const override { return _variant.empty() ? "bare march" : "bare: " + _variant; }
     Status open(const ChartScene& scene) override;
     Status setStep(double stepVoxel) override
     {
@@ -165,6 +165,54 @@ void BareRenderer::makeTable(const ChartScene& scene)
             t.r *= t.a, t.g *= t.a, t.b *= t.a;
         }
     }
+    const int avg = number("AVG2D=", 0);
+    if (avg || has("AVG1D")) {
+        const int m = 8, n = avg ? avg : count; // sub-samples per entry
+        // entry i stands for [i - 1/2, i + 1/2]/(n-1); prefix over sub-samples
+        std::vector<glm::dvec4> prefix(std::size_t(n) * m + 1);
+        const auto fn = *function;
+        for (int i = 0; i < n * m; ++i) {
+            const double v = ((i + 0.5) / m - (avg ? 0.5 : 0.5)) / (n - 1);
+            const glm::dvec4 c = fn.evaluate(std::min(std::max(v, 0.0), 1.0));
+            const double e = core::extinctionFromOpacity(c.a) / std::log(2.0);
+            prefix[std::size_t(i) + 1] = prefix[std::size_t(i)] + glm::dvec4(glm::dvec3(c) * e, e) / double(m);
+        }
+        texels.clear();
+        if (avg && has("FULL")) {
+            const double d = 1.0 / number("INVSTEP=", 1);
+            std::vector<glm::dvec4> f; // colour, extinction (natural) of fine values
+            for (int i = 0; i < n * m; ++i) {
+                const glm::dvec4 c = fn.evaluate(std::min(std::max(((i + 0.5) / m - 0.5) / (n - 1), 0.0), 1.0));
+                f.push_back(glm::dvec4(glm::dvec3(c), core::extinctionFromOpacity(c.a)));
+            }
+            for (int a = 0; a < n; ++a)
+                for (int b = 0; b < n; ++b) {
+                    // from a to b in fine steps
+                    const int k = std::max(1, std::abs(b - a)) * m;
+                    const int stride = std::max(1, k / 64);
+                    const int cnt = k / stride;
+                    double T = 1.0; glm::dvec3 C(0.0);
+                    const double h = d / cnt;
+                    for (int s2 = 0; s2 < cnt; ++s2) {
+                        const double x = a == b ? a + (s2 + 0.5) / cnt - 0.5 : a + (b - a) * (s2 + 0.5) / cnt;
+                        const glm::dvec4& c = f[std::size_t(std::min(std::max(int((x + 0.5) * m), 0), n * m - 1))];
+                        const double T1 = T * std::exp(-c.a * h);
+                        C += (T - T1) * glm::dvec3(c);
+                        T = T1;
+                    }
+                    texels.push_back(T < 1.0 ? glm::vec4(C / (1.0 - T), -std::log2(T) / d) : glm::vec4(0.0f));
+                }
+        } else if (avg) {
+            for (int a = 0; a < n; ++a)
+                for (int b = 0; b < n; ++b) {
+                    const int lo = std::min(a, b), hi = std::max(a, b);
+                    const glm::dvec4 s = lo == hi ? prefix[std::size_t(hi + 1) * m] - prefix[std::size_t(lo) * m] : (prefix[std::size_t(hi) * m + m / 2] - prefix[std::size_t(lo) * m + m / 2]) / double(hi - lo);
+                    texels.push_back(s.a > 0.0 ? glm::vec4(glm::dvec3(s) / s.a, s.a) : glm::vec4(0.0f));
+                }
+        } else {
+            for (int a = 0; a <= n; ++a) texels.push_back(glm::vec4(prefix[std::min(std::size_t(a) * m + m / 2, prefix.size() - 1)]));
+        }
+    }
     GLuint texture = 0;
     glGenTextures(1, &texture);
     glActiveTexture(GL_TEXTURE1);
@@ -175,11 +223,11 @@ void BareRenderer::makeTable(const ChartScene& scene)
         glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
         glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
         glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    } else if (has("TABLE_BUFFER")) {
+    } else if ((has("TABLE_BUFFER") || has("AVG"))) {
         GLuint buffer = 0;
         glGenBuffers(1, &buffer);
         glBindBuffer(GL_TEXTURE_BUFFER, buffer);
-        glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(count * sizeof(glm::vec4)), texels.data(), GL_STATIC_DRAW);
+        glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(texels.size() * sizeof(glm::vec4)), texels.data(), GL_STATIC_DRAW);
         glBindTexture(GL_TEXTURE_BUFFER, texture);
         glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer);
         glUniform1i(uniform("tableBuffer"), 1);
@@ -187,7 +235,7 @@ void BareRenderer::makeTable(const ChartScene& scene)
         GLuint buffer = 0;
         glGenBuffers(1, &buffer);
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, buffer);
-        glBufferData(GL_UNIFORM_BUFFER, GLsizeiptr(count * sizeof(glm::vec4)), texels.data(), GL_STATIC_DRAW);
+        glBufferData(GL_UNIFORM_BUFFER, GLsizeiptr(texels.size() * sizeof(glm::vec4)), texels.data(), GL_STATIC_DRAW);
         glUniformBlockBinding(_program, glGetUniformBlockIndex(_program, "Table"), 0);
     } else {
         glBindTexture(GL_TEXTURE_2D, texture);

@@ -12,9 +12,13 @@ namespace {
 class LibraryRenderer : public Renderer
 {
 public:
-    explicit LibraryRenderer(bool slabs) : _slabs(slabs) {}
+    LibraryRenderer(bool slabs, int brickSize) : _slabs(slabs), _brickSize(brickSize) {}
 
-    std::string name() const override { return _slabs ? "osgVolumizer slabs" : "osgVolumizer slices"; }
+    std::string name() const override
+    {
+        const std::string name = _slabs ? "osgVolumizer slabs" : "osgVolumizer slices";
+        return _brickSize ? name + " bricks " + std::to_string(_brickSize) : name;
+    }
 
     Status open(const ChartScene& scene) override
     {
@@ -28,6 +32,7 @@ public:
         if (!status.ok()) return status;
         osg::ref_ptr<Voxels> voxels = new Voxels(source);
         status = voxels->setRange(osg::Vec2d(scene.range.x, scene.range.y));
+        if (status.ok() && _brickSize) status = voxels->setBrickSize(glm::ivec3(_brickSize));
         if (!status.ok()) return status;
         osg::ref_ptr<LookupTable> table = new LookupTable;
         status = table->setPoints(scene.table, LookupTable::RANGE_FRACTION);
@@ -38,8 +43,12 @@ public:
         _appearance->setLookupTable(table);
         _appearance->setTechnique(_slabs ? VolumeAppearance::SLABS : VolumeAppearance::SLICES);
         _appearance->addChild(VolumeGeometry::createBox(*voxels));
-        if (scene.shaded) return Status(ErrorCode::NOT_SUPPORTED, "no shading yet");
-        _renderer = std::make_unique<support::SceneRenderer>(_appearance, scene.view);
+        if (scene.shaded) return Status(ErrorCode::NOT_SUPPORTED, "has no shading yet");
+        support::RenderOptions options = scene.view;
+        options.light = scene.shaded;
+        _renderer = std::make_unique<support::SceneRenderer>(_appearance, options);
+        _renderer->viewer().getCamera()->getStats()->collectStats("rendering", true);
+        _renderer->viewer().getViewerStats()->collectStats("update", true);
         return _renderer->status();
     }
     Status setStep(double stepVoxel) override
@@ -48,9 +57,24 @@ public:
     }
     void frame() override { _renderer->viewer().frame(); }
     support::FloatImage picture() override { return _renderer->render(); }
+    std::map<std::string, double> split() override
+    {
+        std::map<std::string, double> result = _renderer->counters();
+        osgViewer::Viewer& viewer = _renderer->viewer();
+        const unsigned frame = viewer.getFrameStamp()->getFrameNumber();
+        const auto add = [&](osg::Stats* stats, const std::string& key) {
+            double seconds = 0.0;
+            if (stats->getAttribute(frame, key, seconds)) result[key + ", ms"] = 1e3 * seconds;
+        };
+        add(viewer.getViewerStats(), "Update traversal time taken");
+        add(viewer.getCamera()->getStats(), "Cull traversal time taken");
+        add(viewer.getCamera()->getStats(), "Draw traversal time taken");
+        return result;
+    }
 
 private:
     bool _slabs;
+    int _brickSize;
     std::vector<unsigned char> _data;
     osg::ref_ptr<VolumeAppearance> _appearance;
     std::unique_ptr<support::SceneRenderer> _renderer;
@@ -58,9 +82,9 @@ private:
 
 } // namespace
 
-RendererPtr makeLibraryRenderer(bool slabs)
+RendererPtr makeLibraryRenderer(bool slabs, int brickSize)
 {
-    return std::make_unique<LibraryRenderer>(slabs);
+    return std::make_unique<LibraryRenderer>(slabs, brickSize);
 }
 
 } // namespace bench

@@ -1,12 +1,12 @@
+// Time against error of volume renderers: see ../chart.sh.
+
 #include "Measure.h"
-#ifdef OSGVOLUMIZER_CHART_VTK
-#include "VtkRenderer.h"
-#endif
 
 #include <osg/Notify>
 
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -16,72 +16,161 @@ using namespace osgVolumizer::bench;
 
 namespace {
 
-std::vector<std::string> split(const std::string& text, char separator = ',')
-{
-    std::vector<std::string> parts;
-    std::istringstream in(text);
-    for (std::string part; std::getline(in, part, separator);) parts.push_back(part);
-    return parts;
-}
+const char* const usage = R"(Usage: osgVolumizerChart [options]
+  --scenes A,B,..     default all
+  --renderers A,B,..  of slabs slices slabs:BRICK slices:BRICK bare fixed raytraced multipass vtkgpu
+                      vtkcpu; default the first two and everything after bare that was built
+  --steps A,B,..      sample distances in voxels, default 8,4,2,1,0.5,0.25
+  --rounds N          default 5
+  --csv FILE          writes the points
+  --pictures          writes PNG and EXR of every renderer at the finest step to build/pictures
+  --profile           draws --frames N frames of each renderer at the first step and prints where
+                      the time goes; for callgrind: --toggle-collect='*drawFrames*'
+  --frames N          default 20
+)";
 
 struct Arguments
 {
-    std::vector<std::string> scenes, renderers;
+    std::vector<std::string> scenes;
+    std::vector<std::string> renderers{"slabs",     "slices",    "bare",   "fixed",
+                                       "raytraced", "multipass", "vtkgpu", "vtkcpu"};
     MeasureOptions measure;
     std::string csv;
+    bool profile = false;
+    int frames = 20;
 };
+
+std::vector<std::string> split(const std::string& text)
+{
+    std::vector<std::string> parts;
+    std::istringstream in(text);
+    for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
+    return parts;
+}
+
+bool parse(int argc, char** argv, Arguments& a)
+{
+    for (int i = 1; i < argc; ++i) {
+        const std::string key = argv[i];
+        if (key == "--pictures") {
+            a.measure.pictures = true;
+            continue;
+        }
+        if (key == "--profile") {
+            a.profile = true;
+            continue;
+        }
+        if (i + 1 == argc) return false;
+        const std::string value = argv[++i];
+        if (key == "--scenes")
+            a.scenes = split(value);
+        else if (key == "--renderers")
+            a.renderers = split(value);
+        else if (key == "--rounds")
+            a.measure.rounds = std::atoi(value.c_str());
+        else if (key == "--frames")
+            a.frames = std::atoi(value.c_str());
+        else if (key == "--csv")
+            a.csv = value;
+        else if (key == "--steps") {
+            a.measure.steps.clear();
+            for (const auto& s : split(value)) a.measure.steps.push_back(std::atof(s.c_str()));
+        } else
+            return false;
+    }
+    return !a.measure.steps.empty() && a.measure.rounds > 0 && a.frames > 0;
+}
 
 std::vector<RendererPtr> makeRenderers(const std::vector<std::string>& names)
 {
     std::vector<RendererPtr> result;
     for (const std::string& name : names) {
-        if (name == "slabs" || name == "slices")
-            result.push_back(makeLibraryRenderer(name == "slabs"));
-        else if (name == "fixed")
-            result.push_back(makeOsgVolumeRenderer(OsgVolumeTechnique::FIXED_FUNCTION));
-        else if (name == "raytraced")
-            result.push_back(makeOsgVolumeRenderer(OsgVolumeTechnique::RAY_TRACED));
-        else if (name == "multipass")
-            result.push_back(makeOsgVolumeRenderer(OsgVolumeTechnique::MULTIPASS));
-#ifdef OSGVOLUMIZER_CHART_VTK
-        else if (name == "vtkgpu" || name == "vtkcpu")
-            result.push_back(makeVtkRenderer(name == "vtkgpu"));
-#endif
-        else if (name.compare(0, 4, "bare") == 0)
-            result.push_back(makeBareRenderer(name.size() > 5 ? name.substr(5) : ""));
+        RendererPtr renderer = makeRenderer(name);
+        if (renderer)
+            result.push_back(std::move(renderer));
+        else
+            std::cerr << "No renderer '" << name << "' was built.\n";
     }
     return result;
+}
+
+std::string joined(const std::vector<double>& values)
+{
+    std::ostringstream out;
+    for (double v : values) out << (out.tellp() > 0 ? ";" : "") << v;
+    return out.str();
+}
+
+void printPoint(const Point& p)
+{
+    std::printf("  %-28s step %5.3f %9.2f ms %9.2f cpu  rmse %.2e max %.2e bias %+.2e\n",
+                p.renderer.c_str(), p.step, median(p.milliseconds), median(p.cpuMilliseconds),
+                p.difference.rmse, p.difference.maximum, p.difference.bias);
+}
+
+void writePoint(std::ostream& csv, const Point& p, const ChartScene& scene, const Reference& r)
+{
+    csv << p.scene << ",\"" << scene.description << "\"," << p.renderer << ',' << p.step << ','
+        << p.difference.pixels << ',' << r.remainingError << ',' << p.difference.rmse << ','
+        << p.difference.maximum << ',' << p.difference.bias << ',' << median(p.milliseconds) << ','
+        << median(p.cpuMilliseconds) << ',' << joined(p.milliseconds) << ','
+        << joined(p.cpuMilliseconds) << std::endl;
+}
+
+void chart(const Arguments& a, const std::vector<ChartScene>& scenes)
+{
+    std::ofstream csv;
+    if (!a.csv.empty()) csv.open(a.csv);
+    csv << "scene,description,renderer,step_voxel,pixels,reference_error,rmse,maximum,bias,"
+           "wall_ms,cpu_ms,wall_ms_rounds,cpu_ms_rounds\n";
+    for (const ChartScene& scene : scenes) {
+        const Reference r = reference(scene);
+        std::printf("%s: %s, %zu pixels, reference good to %.1e\n", scene.name.c_str(),
+                    scene.description.c_str(), r.mask.count(), r.remainingError);
+        const std::vector<RendererPtr> renderers = makeRenderers(a.renderers);
+        for (const Point& p : measure(scene, r, renderers, a.measure)) {
+            printPoint(p);
+            writePoint(csv, p, scene, r);
+        }
+        std::fflush(stdout);
+    }
+}
+
+void profile(const Arguments& a, const std::vector<ChartScene>& scenes)
+{
+    for (const ChartScene& scene : scenes)
+        for (const RendererPtr& renderer : makeRenderers(a.renderers)) {
+            const Status status = renderer->open(scene);
+            if (status.ok()) renderer->setStep(a.measure.steps.front());
+            std::printf("%s, %s, step %g: %s\n", scene.name.c_str(), renderer->name().c_str(),
+                        a.measure.steps.front(), status.text.c_str());
+            if (!status.ok()) continue;
+            drawFrames(*renderer, 2);
+            std::printf("  frame, ms: %.3f (median of %d)\n",
+                        median(drawFrames(*renderer, a.frames)), a.frames);
+            for (const auto& part : renderer->split())
+                std::printf("  %s: %.3f\n", part.first.c_str(), part.second);
+        }
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 {
-    osg::setNotifyLevel(osg::WARN);
+    osg::setNotifyLevel(osg::FATAL); // osgVolume warns of shader files that it does not need
     Arguments a;
-    a.renderers = {"slabs", "slices", "bare"};
-    for (int i = 1; i + 1 < argc; i += 2) {
-        const std::string key = argv[i], value = argv[i + 1];
-        if (key == "--scenes") a.scenes = split(value);
-        if (key == "--renderers") a.renderers = split(value);
-        if (key == "--rounds") a.measure.rounds = std::atoi(value.c_str());
-        if (key == "--csv") a.csv = value;
-        if (key == "--pictures") a.measure.pictures = value == "1";
-        if (key == "--steps") {
-            a.measure.steps.clear();
-            for (const auto& s : split(value)) a.measure.steps.push_back(std::atof(s.c_str()));
-        }
+    if (!parse(argc, argv, a)) {
+        std::cerr << usage;
+        return 2;
     }
-    for (const ChartScene& scene : chartScenes(a.scenes)) {
-        const Reference r = reference(scene);
-        std::printf("%s: %s, %zu pixels, reference good to %.1e\n", scene.name.c_str(),
-                    scene.description.c_str(), r.mask.count(), r.remainingError);
-        const std::vector<RendererPtr> renderers = makeRenderers(a.renderers);
-        for (const Point& p : measure(scene, r, renderers, a.measure))
-            std::printf("%-44s %6.3f  %8.2f ms %8.2f cpu  rmse %.2e max %.2e bias %+.2e\n",
-                        p.renderer.c_str(), p.step, median(p.milliseconds),
-                        median(p.cpuMilliseconds), p.difference.rmse, p.difference.maximum,
-                        p.difference.bias);
+    const std::vector<ChartScene> scenes = chartScenes(a.scenes);
+    if (scenes.empty()) {
+        std::cerr << "No such scene.\n";
+        return 1;
     }
+    if (a.profile)
+        profile(a, scenes);
+    else
+        chart(a, scenes);
     return 0;
 }

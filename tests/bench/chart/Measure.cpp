@@ -12,6 +12,10 @@ namespace bench {
 
 namespace {
 
+// Pictures of shaded scenes are judged by the renderer's own one at this step: each shades by
+// another model.
+constexpr double SHADED_REFERENCE_STEP = 1.0 / 16.0;
+
 double cpuMilliseconds()
 {
     rusage usage;
@@ -20,7 +24,7 @@ double cpuMilliseconds()
     return ms(usage.ru_utime) + ms(usage.ru_stime);
 }
 
-// What a screen shows: alpha left out, since half of the peers write none that means anything.
+// What a screen shows: alpha is left out, since some of the peers write none that means anything.
 support::Difference compareOverBlack(support::FloatImage a, support::FloatImage b,
                                      const support::Mask& mask)
 {
@@ -32,14 +36,49 @@ support::Difference compareOverBlack(support::FloatImage a, support::FloatImage 
     return d;
 }
 
-void timeFrame(Renderer& renderer, Point& point)
+// What only the first frame after a change costs is not counted.
+void drawAt(Renderer& renderer, double step)
 {
-    const double cpu = cpuMilliseconds();
+    const Status status = renderer.setStep(step);
+    if (!status.ok()) std::cerr << renderer.name() << ": " << status.text << "\n";
+    renderer.frame();
+}
+
+double timeFrame(Renderer& renderer)
+{
     const auto start = std::chrono::steady_clock::now();
     renderer.frame();
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
-    point.milliseconds.push_back(wall.count());
-    point.cpuMilliseconds.push_back(cpuMilliseconds() - cpu);
+    return wall.count();
+}
+
+// A renderer that could be opened, and what its pictures are compared with.
+struct Entry
+{
+    Renderer* renderer;
+    support::FloatImage picture;
+    support::Mask mask;
+};
+
+std::vector<Entry> openAll(const ChartScene& scene, const Reference& reference,
+                           const std::vector<RendererPtr>& renderers)
+{
+    std::vector<Entry> entries;
+    for (const RendererPtr& renderer : renderers) {
+        const Status status = renderer->open(scene);
+        if (!status.ok()) {
+            std::cerr << scene.name << ", " << renderer->name() << ": " << status.text << "\n";
+            continue;
+        }
+        Entry entry{renderer.get(), reference.picture, reference.mask};
+        if (scene.shaded) {
+            drawAt(*renderer, SHADED_REFERENCE_STEP);
+            entry.picture = renderer->picture();
+            entry.mask = support::coveredPixels(entry.picture);
+        }
+        entries.push_back(std::move(entry));
+    }
+    return entries;
 }
 
 } // namespace
@@ -55,40 +94,37 @@ double median(std::vector<double> values)
 std::vector<Point> measure(const ChartScene& scene, const Reference& reference,
                            const std::vector<RendererPtr>& renderers, const MeasureOptions& options)
 {
-    std::vector<Renderer*> open;
-    for (const RendererPtr& renderer : renderers) {
-        const Status status = renderer->open(scene);
-        if (status.ok())
-            open.push_back(renderer.get());
-        else
-            std::cerr << scene.name << ", " << renderer->name() << ": " << status.text << "\n";
-    }
-    std::vector<Point> points;
-    for (double step : options.steps)
-        for (Renderer* renderer : open) {
-            Point point;
-            point.scene = scene.name;
-            point.renderer = renderer->name();
-            point.step = step;
-            points.push_back(point);
-        }
+    const std::vector<Entry> entries = openAll(scene, reference, renderers);
+    std::vector<Point> points(options.steps.size() * entries.size());
     for (int round = 0; round < options.rounds; ++round) {
         std::size_t i = 0;
         for (double step : options.steps)
-            for (Renderer* renderer : open) {
+            for (const Entry& entry : entries) {
+                Renderer& renderer = *entry.renderer;
                 Point& point = points[i++];
-                renderer->setStep(step);
-                renderer->frame(); // what only the first frame after a change costs
+                drawAt(renderer, step);
                 if (round == 0) {
-                    const support::FloatImage picture = renderer->picture();
-                    point.difference = compareOverBlack(picture, reference.picture, reference.mask);
+                    const support::FloatImage picture = renderer.picture();
+                    point.scene = scene.name;
+                    point.renderer = renderer.name();
+                    point.step = step;
+                    point.difference = compareOverBlack(picture, entry.picture, entry.mask);
                     if (options.pictures && step == options.steps.back())
-                        support::savePicture(picture, "chart-" + scene.name + "-" + renderer->name());
+                        support::savePicture(picture, "chart " + scene.name + " " + point.renderer);
                 }
-                timeFrame(*renderer, point);
+                const double cpu = cpuMilliseconds();
+                point.milliseconds.push_back(timeFrame(renderer));
+                point.cpuMilliseconds.push_back(cpuMilliseconds() - cpu);
             }
     }
     return points;
+}
+
+std::vector<double> drawFrames(Renderer& renderer, int count)
+{
+    std::vector<double> milliseconds;
+    for (int i = 0; i < count; ++i) milliseconds.push_back(timeFrame(renderer));
+    return milliseconds;
 }
 
 } // namespace bench

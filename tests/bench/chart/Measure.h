@@ -3,32 +3,34 @@
 #include "Reference.h"
 #include "Renderer.h"
 
-#include <ostream>
-
 namespace osgVolumizer {
 namespace bench {
 
-/// One point of the chart.
+/// One point of the chart: one renderer at one step.
 struct Point
 {
     std::string scene, renderer;
     double step = 0.0;
-    support::Difference difference;    ///< picture minus reference
-    std::vector<double> milliseconds;  ///< wall clock, one per round
+    support::Difference difference;      ///< picture minus reference, red, green and blue
+    std::vector<double> milliseconds;    ///< wall clock of a frame, one per round
     std::vector<double> cpuMilliseconds; ///< of all threads of the process
 };
 
 struct MeasureOptions
 {
-    std::vector<double> steps{4.0, 2.0, 1.0, 0.5, 0.25};
+    std::vector<double> steps{8.0, 4.0, 2.0, 1.0, 0.5, 0.25};
     int rounds = 5;
-    bool pictures = false; ///< write a PNG of each renderer's finest step to the build folder
+    bool pictures = false; ///< write what each renderer draws at its finest step, for people
 };
 
 /// Draws a scene with all renderers: one round after the other, in each every step, and for each
 /// step every renderer, so that whatever else the machine does falls on all alike.
 std::vector<Point> measure(const ChartScene& scene, const Reference& reference,
                            const std::vector<RendererPtr>& renderers, const MeasureOptions& options);
+
+/// Draws frames of one renderer, with nothing between them: for a profiler that is told to count
+/// inside of this function only. Returns the wall clock milliseconds of each.
+std::vector<double> drawFrames(Renderer& renderer, int count);
 
 double median(std::vector<double> values);
 

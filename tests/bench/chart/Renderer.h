@@ -2,6 +2,7 @@
 
 #include "Scenes.h"
 
+#include <map>
 #include <memory>
 
 namespace osgVolumizer {
@@ -24,17 +25,24 @@ public:
     virtual void frame() = 0;
     /// Reads back what the last frame drew: premultiplied, bottom row first.
     virtual support::FloatImage picture() = 0;
+    /// Where the time of the last frame went, milliseconds by name; empty where that is not known.
+    virtual std::map<std::string, double> split() { return {}; }
 };
 
 using RendererPtr = std::unique_ptr<Renderer>;
 
-RendererPtr makeLibraryRenderer(bool slabs);
+/// Bricks of at most `brickSize` samples per axis; 0: the library's default, which is one brick
+/// for all scenes here.
+RendererPtr makeLibraryRenderer(bool slabs, int brickSize = 0);
 /// A fragment shader that marches through the box in one pass, without a scene graph: the
-/// practical limit. `variant` names a set of #defines of march.frag.glsl, "" the best known.
-RendererPtr makeBareRenderer(const std::string& variant = "");
+/// practical limit. `defines` are lines of march.frag.glsl's options, see there.
+RendererPtr makeBareRenderer(const std::string& defines = "");
 
 enum class OsgVolumeTechnique { FIXED_FUNCTION, RAY_TRACED, MULTIPASS };
 RendererPtr makeOsgVolumeRenderer(OsgVolumeTechnique technique);
+
+/// By the name of the command line; null for an unknown one.
+RendererPtr makeRenderer(const std::string& name);
 
 } // namespace bench
 } // namespace osgVolumizer

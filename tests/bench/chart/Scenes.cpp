@@ -1,9 +1,12 @@
 #include "Scenes.h"
 
-#include <osgVolumizer/Voxels.h>
+#include <osgVolumizer/LookupTable.h>
+#include <osgVolumizer/ReadVoxels.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iostream>
 
 namespace osgVolumizer {
 namespace bench {
@@ -63,9 +66,9 @@ Points peakTable()
             {0.53125, {blue, 0.0}}, {1.0, {blue, 0.0}}};
 }
 
+// The same view of the 128^3 box for whatever part of it has voxels.
 void setView(ChartScene& scene, bool perspective, int pixels)
 {
-    // The same view of the 128^3 box for whatever part of it has voxels.
     const osg::Vec3d center(63.5, 63.5, 63.5), direction(0.42, 0.76, -0.5);
     scene.view.size(pixels, pixels);
     if (perspective)
@@ -85,7 +88,7 @@ ChartScene synthetic(const std::string& name, const std::string& description, Vo
     scene.type = type;
     scene.table = table;
     fill(scene, f);
-    setView(scene, false, 512);
+    setView(scene, true, 512);
     return scene;
 }
 
@@ -99,7 +102,33 @@ ChartScene tightBlob()
     scene.type = VoxelType::FLOAT32;
     scene.table = smoothTable(0.3);
     fill(scene, blob);
-    setView(scene, false, 512);
+    setView(scene, true, 512);
+    return scene;
+}
+
+// The MR scan that the library ships, as its own scene file shows it.
+ChartScene head(const std::string& name, bool shaded)
+{
+    ChartScene scene;
+    scene.name = name;
+    scene.description = shaded ? "MR head, shaded" : "MR head";
+    scene.shaded = shaded;
+    const std::string folder = OSGVOLUMIZER_SOURCE_DIR "/data/";
+    const auto voxels = readVoxels(folder + "head.tif");
+    const auto table = readLookupTable(folder + "head.lut");
+    if (!voxels.ok() || !table.ok()) {
+        std::cerr << name << ": " << (voxels.ok() ? table.status.text : voxels.status.text) << "\n";
+        return scene;
+    }
+    scene.size = (*voxels)->getSize();
+    scene.type = (*voxels)->getType();
+    const VoxelBlock block = (*voxels)->getBrick(0);
+    scene.voxels.assign(block.data, block.data + block.bytes);
+    scene.range = {0.0, 255.0};
+    scene.table = (*table)->getNormalizedFunction(osg::Vec2d(0.0, 255.0))->points();
+    const osg::Vec3d center(63.5, 63.5, 41.5), direction(0.64, 0.12, 0.76);
+    scene.view.size(512, 512).perspective(30.0);
+    scene.view.lookAt(center - direction * 330.0, center, {0.0, -1.0, 0.0});
     return scene;
 }
 
@@ -107,38 +136,35 @@ using Maker = std::function<ChartScene()>;
 
 std::vector<std::pair<std::string, Maker>> makers()
 {
+    const auto field = [](const char* text, VoxelType type, const ScalarFunction& f,
+                          const Points& table, bool perspective = true, int pixels = 512) {
+        return [=](const std::string& name) {
+            ChartScene scene = synthetic(name, text, type, f, table);
+            setView(scene, perspective, pixels);
+            return scene;
+        };
+    };
     const VoxelType f = VoxelType::FLOAT32;
-    const auto smooth = [](const std::string& name, VoxelType type, bool perspective, int pixels) {
-        return Maker([=] {
-            ChartScene s =
-                synthetic(name, "Marschner-Lobb 128^3 fills the box, smooth table", type,
-                          marschnerLobb, smoothTable(0.06));
-            setView(s, perspective, pixels);
-            return s;
-        });
+    const Points smooth = smoothTable(0.06);
+    const std::vector<std::pair<std::string, std::function<ChartScene(const std::string&)>>> list = {
+        {"smooth", field("smooth table, float voxels fill the box", f, marschnerLobb, smooth)},
+        {"smooth-8bit",
+         field("the same, 8-bit voxels", VoxelType::UINT8, marschnerLobb, smooth)},
+        {"smooth-16bit",
+         field("the same, 16-bit voxels", VoxelType::UINT16, marschnerLobb, smooth)},
+        {"smooth-ortho", field("the same, orthographic", f, marschnerLobb, smooth, false)},
+        {"smooth-1024", field("the same, 1024 x 1024", f, marschnerLobb, smooth, true, 1024)},
+        {"blob", field("blob with empty borders", f, blob, smoothTable(0.3))},
+        {"blob-tight", [](const std::string&) { return tightBlob(); }},
+        {"peak", field("sharp peak in the table", f, marschnerLobb, peakTable())},
+        {"opaque", field("near-opaque", f, marschnerLobb, smoothTable(0.9))},
+        {"head", [](const std::string& name) { return head(name, false); }},
+        {"head-shaded", [](const std::string& name) { return head(name, true); }},
     };
-    return {
-        {"smooth", smooth("smooth", f, false, 512)},
-        {"smooth-perspective", smooth("smooth-perspective", f, true, 512)},
-        {"smooth-1024", smooth("smooth-1024", f, false, 1024)},
-        {"smooth-8bit", smooth("smooth-8bit", VoxelType::UINT8, false, 512)},
-        {"smooth-16bit", smooth("smooth-16bit", VoxelType::UINT16, false, 512)},
-        {"blob",
-         [f] {
-             return synthetic("blob", "interior blob with empty borders", f, blob, smoothTable(0.3));
-         }},
-        {"blob-tight", tightBlob},
-        {"peak",
-         [f] {
-             return synthetic("peak", "Marschner-Lobb 128^3, sharp peak in the table", f,
-                              marschnerLobb, peakTable());
-         }},
-        {"opaque",
-         [f] {
-             return synthetic("opaque", "Marschner-Lobb 128^3, near-opaque", f, marschnerLobb,
-                              smoothTable(0.9));
-         }},
-    };
+    std::vector<std::pair<std::string, Maker>> result;
+    for (const auto& entry : list)
+        result.emplace_back(entry.first, [entry] { return entry.second(entry.first); });
+    return result;
 }
 
 } // namespace
@@ -153,9 +179,11 @@ std::vector<ChartScene> chartScenes(const std::vector<std::string>& filters)
 {
     std::vector<ChartScene> scenes;
     for (const auto& maker : makers()) {
-        bool wanted = filters.empty();
-        for (const std::string& filter : filters) wanted = wanted || maker.first == filter;
-        if (wanted) scenes.push_back(maker.second());
+        const bool wanted = filters.empty() || std::find(filters.begin(), filters.end(),
+                                                         maker.first) != filters.end();
+        if (!wanted) continue;
+        ChartScene scene = maker.second();
+        if (!scene.voxels.empty()) scenes.push_back(std::move(scene));
     }
     return scenes;
 }

@@ -38,7 +38,7 @@ struct ChartScene
     std::vector<double> values() const;
 };
 
-/// The scenes of the chart, in order; those whose name contains one of `filters`, or all. The MR
+/// The scenes of the chart, in order; those named in `filters`, or all. The MR
 /// head is read from the source tree's data/.
 std::vector<ChartScene> chartScenes(const std::vector<std::string>& filters);
 

@@ -1,0 +1,30 @@
+#include "Renderer.h"
+
+#ifdef OSGVOLUMIZER_CHART_VTK
+#include "VtkRenderer.h"
+#endif
+
+#include <algorithm>
+
+namespace osgVolumizer {
+namespace bench {
+
+RendererPtr makeRenderer(const std::string& name)
+{
+    const std::size_t colon = std::min(name.find(':'), name.size());
+    const std::string kind = name.substr(0, colon);
+    const std::string detail = colon < name.size() ? name.substr(colon + 1) : "";
+    if (kind == "slabs" || kind == "slices")
+        return makeLibraryRenderer(kind == "slabs", detail.empty() ? 0 : std::stoi(detail));
+    if (kind == "bare") return makeBareRenderer(detail);
+    if (kind == "fixed") return makeOsgVolumeRenderer(OsgVolumeTechnique::FIXED_FUNCTION);
+    if (kind == "raytraced") return makeOsgVolumeRenderer(OsgVolumeTechnique::RAY_TRACED);
+    if (kind == "multipass") return makeOsgVolumeRenderer(OsgVolumeTechnique::MULTIPASS);
+#ifdef OSGVOLUMIZER_CHART_VTK
+    if (kind == "vtkgpu" || kind == "vtkcpu") return makeVtkRenderer(kind == "vtkgpu");
+#endif
+    return nullptr;
+}
+
+} // namespace bench
+} // namespace osgVolumizer
