@@ -1,7 +1,9 @@
 #include "BrickTextures.h"
 
+#include "../core/voxels/Half.h"
 #include "../core/voxels/VoxelData.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -54,11 +56,17 @@ double signedOffset(VoxelType type)
     return type == VoxelType::INT8 ? -128.0 : type == VoxelType::INT16 ? -32768.0 : 0.0;
 }
 
-bool hasHoles(const float* values, std::size_t count)
+// Voxels that are NaN or infinite show what the lowest value shows; a NaN would spread through the filter.
+template <class T>
+bool hasHoles(const T* values, std::size_t count)
 {
-    for (std::size_t i = 0; i < count; ++i)
-        if (!std::isfinite(values[i])) return true;
-    return false;
+    return std::any_of(values, values + count, [](T v) { return !std::isfinite(float(v)); });
+}
+
+template <class T>
+void fillHoles(T* values, std::size_t count, T lowest)
+{
+    std::replace_if(values, values + count, [](T v) { return !std::isfinite(float(v)); }, lowest);
 }
 
 // The texels of a brick: the block itself where nothing has to change.
@@ -67,22 +75,21 @@ VoxelBlock texelsOf(const Voxels& voxels, const VoxelBlock& block, const TexelFo
     const VoxelType type = voxels.getType();
     const std::size_t count = block.bytes / voxelTypeSize(type);
     const bool same = type == format.type && !format.fraction;
-    const bool floats = format.type == VoxelType::FLOAT32;
-    if (same && !(floats && hasHoles(reinterpret_cast<const float*>(block.data), count)))
-        return block;
+    const bool floats = format.type == VoxelType::FLOAT32, halves = format.type == VoxelType::HALF;
+    const bool holes =
+        same && ((floats && hasHoles(reinterpret_cast<const float*>(block.data), count)) ||
+                 (halves && hasHoles(reinterpret_cast<const core::Half*>(block.data), count)));
+    if (same && !holes) return block;
     const osg::Vec2d range = voxels.getRange();
     const double scale = format.fraction ? 1.0 / (range.y() - range.x()) : 1.0;
     const double offset = format.fraction ? -range.x() * scale : -signedOffset(type);
     auto converted =
         std::make_shared<std::vector<unsigned char>>(count * voxelTypeSize(format.type));
     core::convertVoxels(block.data, type, converted->data(), format.type, count, scale, offset);
-    if (floats) {
-        // Holes show what the lowest value shows; a NaN would spread through the filter.
-        const float lowest = format.fraction ? 0.0f : static_cast<float>(range.x());
-        auto* values = reinterpret_cast<float*>(converted->data());
-        for (std::size_t i = 0; i < count; ++i)
-            if (!std::isfinite(values[i])) values[i] = lowest;
-    }
+    const float lowest = format.fraction ? 0.0f : static_cast<float>(range.x());
+    if (floats) fillHoles(reinterpret_cast<float*>(converted->data()), count, lowest);
+    if (halves)
+        fillHoles(reinterpret_cast<core::Half*>(converted->data()), count, core::Half(lowest));
     return {converted, converted->data(), converted->size()};
 }
 
