@@ -171,8 +171,19 @@ osg::BoundingBox VolumeGeometry::computeBoundingBox() const
 {
     const core::Box3d box = getTetraSet()->bounds();
     if (box.empty()) return {};
-    return {roundDown(box.min.x), roundDown(box.min.y), roundDown(box.min.z),
-            roundUp(box.max.x),   roundUp(box.max.y),   roundUp(box.max.z)};
+    osg::BoundingBox result;
+    for (int axis = 0; axis < 3; ++axis) {
+        float low = roundDown(box.min[axis]), high = roundUp(box.max[axis]);
+        // OSG takes the bounding sphere from this box, with a centre that is rounded as well: where
+        // floats are coarse, make room for it.
+        if (high - low < 16.0f * (std::nextafter(high, INFINITY) - high)) {
+            low = std::nextafter(low, -INFINITY);
+            high = std::nextafter(high, INFINITY);
+        }
+        result._min[axis] = low;
+        result._max[axis] = high;
+    }
+    return result;
 }
 
 osg::BoundingSphere VolumeGeometry::computeBound() const
