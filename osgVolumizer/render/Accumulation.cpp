@@ -1,6 +1,7 @@
 #include "Accumulation.h"
 
 #include "ScissorScope.h"
+#include "SharedStateSets.h"
 #include "VolumeProgram.h"
 
 #include <osg/Depth>
@@ -105,14 +106,13 @@ void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorF
 // Clearing the layer buffer needs depth writes.
 osg::ref_ptr<osg::StateSet> accumulationStateSet()
 {
-    static const osg::ref_ptr<osg::StateSet> set = []() {
+    return sharedStateSet(SharedState::ACCUMULATION, []() {
         osg::ref_ptr<osg::StateSet> s = new osg::StateSet;
         s->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true),
                                 osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE |
                                     osg::StateAttribute::PROTECTED);
         return s;
-    }();
-    return set;
+    });
 }
 
 // Depth in float, so that what is written back from a texture is what was captured, to the last bit.

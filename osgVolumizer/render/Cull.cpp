@@ -152,7 +152,8 @@ VolumeAppearance::Lookup lookupOf(const VolumeAppearance& appearance,
 
 // How the shader gets a colour out of a brick.
 void setInterpolation(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
-                      const TableTexture& table, ProgramFeatures& features)
+                      const TableTexture& table, double voxelsPerSample,
+                      ProgramFeatures& features)
 {
     if (!features.voxels) return;
     const auto interpolation = usedInterpolation(appearance);
@@ -164,9 +165,8 @@ void setInterpolation(const VolumeAppearance& appearance, const PreparedGeometry
     features.before = appearance.getLookup() == VolumeAppearance::BEFORE_INTERPOLATION &&
                       interpolation != VolumeAppearance::NEAREST;
     features.preIntegrated = table.integrals;
-    const glm::dvec3 period = appearance.getSamplingParameters().periodVoxel;
     features.smoothTable =
-        !table.integrals && (appearance.getExactFiltering() || std::min({period.x, period.y, period.z}) < 1.0);
+        !table.integrals && (appearance.getExactFiltering() || voxelsPerSample < 0.999);
 }
 
 std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table,
@@ -185,7 +185,6 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     features.opaqueDepth = features.slab;
     features.spherical = !features.slab && volume.sampling.mode == SamplingMode::SPHERICAL;
     look->table = table;
-    setInterpolation(appearance, prepared, table, features);
     if (voxels) {
         const glm::dvec2 fraction = texelToRangeFraction(*voxels);
         look->valueToEntry = glm::vec2(fraction * (table.count - 1.0));
@@ -197,6 +196,9 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;
     look->step = sampleDepth(toEye, prepared.regionBox, volume.sampling);
     look->maximumSteps = volume.sampling.maximumSamples + 2;
+    const glm::dvec3 alongView = glm::inverse(glm::dmat3(toEye)) * glm::dvec3(0.0, 0.0, -1.0);
+    setInterpolation(appearance, prepared, table,
+                     look->step * glm::length(alongView / volume.sampling.voxelSize), features);
     if (features.slab) {
         look->regionMin = glm::vec3(prepared.regionBox.min);
         look->regionMax = glm::vec3(prepared.regionBox.max);

@@ -1,6 +1,7 @@
 #include "DepthLayers.h"
 
 #include "ScissorScope.h"
+#include "SharedStateSets.h"
 #include "VolumeProgram.h"
 
 #include <osg/ColorMask>
@@ -33,6 +34,7 @@ osg::ref_ptr<osg::Program> screenProgram(const char* fragment)
     return program;
 }
 
+// Writes either colour or depth.
 osg::ref_ptr<osg::StateSet> screenState(const char* fragment, bool writeDepth)
 {
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
@@ -40,7 +42,8 @@ osg::ref_ptr<osg::StateSet> screenState(const char* fragment, bool writeDepth)
     set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, writeDepth), FORCE);
     const unsigned off = StateAttribute::OFF | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
     for (GLenum mode : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_ALPHA_TEST}) set->setMode(mode, off);
-    set->setAttribute(new osg::ColorMask(true, true, true, true), FORCE);
+    const bool color = !writeDepth;
+    set->setAttribute(new osg::ColorMask(color, color, color, color), FORCE);
     for (int k = 0; k < LayerLeaf::LAYER_COUNT; ++k)
         set->addUniform(new osg::Uniform(("layer" + std::to_string(k)).c_str(),
                                          int(UNIT_FIRST_LAYER) + k));
@@ -98,15 +101,16 @@ osg::Object* LayerLeaf::cloneType() const
 
 osg::ref_ptr<osg::StateSet> LayerLeaf::stateSet(Step step)
 {
-    static const osg::ref_ptr<osg::StateSet> sort = screenState("sort.frag.glsl", false);
-    static const osg::ref_ptr<osg::StateSet> fill = screenState("fill.frag.glsl", true);
-    static const osg::ref_ptr<osg::StateSet> clear = []() {
+    if (step == SORT)
+        return sharedStateSet(SharedState::SORT, []() { return screenState("sort.frag.glsl", false); });
+    if (step == BEGIN_RANK || step == BEGIN_REST)
+        return sharedStateSet(SharedState::FILL, []() { return screenState("fill.frag.glsl", true); });
+    return sharedStateSet(SharedState::CLEAR, []() {
         osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
         set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE);
         set->setAttribute(new osg::Stencil, FORCE); // its write mask is all ones
         return set;
-    }();
-    return step == SORT ? sort : step == BEGIN_RANK || step == BEGIN_REST ? fill : clear;
+    });
 }
 
 void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
@@ -170,12 +174,9 @@ void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
         state.haveAppliedTextureAttribute(unit, StateAttribute::TEXTURE);
 }
 
-osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index,
-                                              const osg::Depth* effectiveDepth)
+osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index)
 {
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-    const double zNear = effectiveDepth ? effectiveDepth->getZNear() : 0.0;
-    const double zFar = effectiveDepth ? effectiveDepth->getZFar() : 1.0;
     const auto stencil = [&set](osg::Stencil::Function function, int reference) {
         osg::ref_ptr<osg::Stencil> s = new osg::Stencil;
         s->setFunction(function, reference, 0xff);
@@ -191,8 +192,9 @@ osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index,
         function = osg::Depth::LESS;
         stencil(osg::Stencil::LEQUAL, LayerLeaf::LAYER_COUNT); // passes where the count has come this far
     }
+    // True depths, whatever range the leaf asks for: the volume is compared with them.
     set->setAttributeAndModes(
-        new osg::Depth(function, zNear, zFar, step == LayerLeaf::BEGIN_CAPTURE), FORCE);
+        new osg::Depth(function, 0.0, 1.0, step == LayerLeaf::BEGIN_CAPTURE), FORCE);
     return set;
 }
 

@@ -57,8 +57,7 @@ private:
 };
 
 /// How surfaces are drawn into the layers, per step that begins with them.
-osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index,
-                                              const osg::Depth* effectiveDepth);
+osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index);
 
 } // namespace render
 } // namespace osgVolumizer

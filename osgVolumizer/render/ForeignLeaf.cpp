@@ -92,8 +92,6 @@ std::optional<ForeignLeaf> ForeignLeaf::examine(osgUtil::RenderLeaf& leaf,
     return result;
 }
 
-const osg::Depth* ForeignLeaf::depth() const { return effectiveDepth(_leaf->_parent); }
-
 osgUtil::RenderLeaf* ForeignLeaf::copy(osg::StateSet& state) const
 {
     osg::ref_ptr<osgUtil::RenderLeaf> leaf =
@@ -117,7 +115,7 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
     for (int row = 0; row < 4; ++row)
         (*projection)(row, 2) = scale * p(row, 2) + offset * p(row, 3);
 
-    const osg::Depth* depth = this->depth();
+    const osg::Depth* depth = effectiveDepth(_leaf->_parent);
     // Segments are split at true depths, whatever range the leaf draws to.
     const bool ownRange = depth && !layer;
     const double rangeNear = ownRange ? depth->getZNear() : 0.0;

@@ -57,8 +57,6 @@ public:
 
     /// A copy of the whole leaf with a state of the caller's on top.
     osgUtil::RenderLeaf* copy(osg::StateSet& state) const;
-    /// The Depth attribute in force for the leaf; null: OSG's default.
-    const osg::Depth* depth() const;
 
 private:
     explicit ForeignLeaf(osgUtil::RenderLeaf& leaf) : _leaf(&leaf) {}

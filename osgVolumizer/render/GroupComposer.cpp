@@ -4,6 +4,7 @@
 #include "Matrices.h"
 #include "ScreenAreas.h"
 
+#include <osgText/TextBase>
 #include <osgUtil/StateGraph>
 
 #include <algorithm>
@@ -123,12 +124,15 @@ std::vector<core::ScheduledInterval> GroupComposer::schedule(const Region& regio
     std::vector<core::ScheduleMember> members;
     core::ScheduleLimits limits;
     for (const PreparedVolume& volume : _volumes) {
-        members.push_back({volume.instance->depth, true, volume.looks[WHOLE]->step});
+        members.push_back({volume.instance->depth, true, _step});
         // A slice has no inside that a layer could split.
         if (volume.sliced) limits.surfaceSteps = 1.0;
     }
-    for (std::size_t s : region.surfaces)
+    for (std::size_t s : region.surfaces) {
         members.push_back({_surfaces[s].view.depth, false, 0.0});
+        // What leaves no depth cannot split a segment either.
+        if (!leavesDepth(_surfaces[s])) limits.surfaceSteps = 1.0;
+    }
     return core::depthSchedule(members, limits);
 }
 
@@ -164,22 +168,33 @@ void GroupComposer::compose(std::vector<OrderedLeaf>& leaves)
     for (const Region& region : findRegions()) composeRegion(region, leaves);
 }
 
+// Other drawables may set the depth mask themselves, as particle systems do.
+bool GroupComposer::leavesDepth(const Surface& surface)
+{
+    const osg::Drawable* drawable = surface.leaf->leaf().getDrawable();
+    return (drawable->asGeometry() || dynamic_cast<const osgText::TextBase*>(drawable)) &&
+           !drawable->getDrawCallback();
+}
+
 // Sorting draws every surface twice per layer; worth it until triangles cost more than intervals do.
 bool GroupComposer::isWorthSorting(const Region& region) const
 {
-    if (region.surfaces.empty() || _volumes.size() != 1 || _volumes.front().sliced) return false;
+    if (region.surfaces.empty()) return false;
+    for (const PreparedVolume& volume : _volumes)
+        if (volume.sliced) return false;
     std::size_t triangles = 0;
-    for (std::size_t s : region.surfaces)
+    for (std::size_t s : region.surfaces) {
+        if (!leavesDepth(_surfaces[s])) return false;
         triangles += _surfaces[s].mesh ? _surfaces[s].mesh->triangleCount() : UNKNOWN_TRIANGLES;
+    }
     return triangles <= MAXIMUM_SORTED_TRIANGLES;
 }
 
 void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>& leaves)
 {
     using Step = LayerLeaf::Step;
-    PreparedVolume& volume = _volumes.front();
-    const double depth = volume.instance->look->referenceDepth;
-    const std::shared_ptr<const VolumeMesh> mesh = meshOf(volume, {volume.instance->depth});
+    const double depth = _volumes.front().instance->look->referenceDepth;
+    const std::vector<core::ScheduledInterval> intervals = schedule({region.rectangles, {}});
     _accumulation.requireTarget();
     for (int k = 0; k < LayerLeaf::LAYER_COUNT; ++k) {
         addLayerStep(Step::BEGIN_CAPTURE, k, region, depth, leaves);
@@ -187,12 +202,18 @@ void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>
         addLayerStep(Step::END_CAPTURE, k, region, depth, leaves);
     }
     addLayerStep(Step::SORT, 0, region, depth, leaves);
+    std::vector<OrderedLeaf> segments;
     for (int rank = 0; rank <= LayerLeaf::LAYER_COUNT; ++rank) {
-        auto look = std::make_shared<VolumeLook>(*volume.looks[WHOLE]);
-        look->features.ranked = true;
-        look->rank = rank;
+        for (PreparedVolume& volume : _volumes) {
+            auto look = std::make_shared<VolumeLook>(*volume.looks[WHOLE]);
+            look->features.ranked = true;
+            look->rank = rank;
+            volume.looks[WHOLE] = look;
+        }
         addLayerStep(Step::BEGIN_SEGMENT, rank, region, depth, leaves);
-        addVolume(volume, mesh, look, depth, leaves);
+        segments.clear();
+        composeVolumes(intervals, segments);
+        for (const OrderedLeaf& segment : segments) leaves.push_back({depth, segment.leaf});
         addLayerStep(Step::END_SEGMENT, rank, region, depth, leaves);
         const bool rest = rank == LayerLeaf::LAYER_COUNT;
         const int query = rest ? rank - 1 : rank;
@@ -200,6 +221,30 @@ void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>
         addLayerStep(begin, query, region, depth, leaves);
         addSurfaces(begin, rank, region, depth, leaves);
         addLayerStep(rest ? Step::END_REST : Step::END_RANK, query, region, depth, leaves);
+    }
+}
+
+// Intervals without surfaces: slabs, alternating who goes first.
+void GroupComposer::composeVolumes(const std::vector<core::ScheduledInterval>& intervals,
+                                   std::vector<OrderedLeaf>& leaves)
+{
+    bool reversed = false;
+    for (const core::ScheduledInterval& interval : intervals) {
+        addPending(interval, reversed, leaves);
+        reversed = !reversed;
+    }
+    flush(leaves);
+}
+
+void GroupComposer::addPending(const core::ScheduledInterval& interval, bool reversed,
+                               std::vector<OrderedLeaf>& leaves)
+{
+    std::vector<int> order = interval.volumes;
+    if (reversed) std::reverse(order.begin(), order.end());
+    for (int v : order) {
+        if (_pendingVolume != v) flush(leaves);
+        _pendingVolume = v;
+        _volumes[static_cast<std::size_t>(v)].pending.push_back(interval.depth);
     }
 }
 
@@ -218,7 +263,7 @@ void GroupComposer::addSurfaces(LayerLeaf::Step step, int index, const Region& r
 {
     for (std::size_t s : region.surfaces) {
         const ForeignLeaf& surface = *_surfaces[s].leaf;
-        leaves.push_back({depth, surface.copy(*layerSurfaceState(step, index, surface.depth()))});
+        leaves.push_back({depth, surface.copy(*layerSurfaceState(step, index))});
         ++_counts.surfacePieces;
     }
 }
@@ -238,15 +283,9 @@ void GroupComposer::composeRegion(const Region& region, std::vector<OrderedLeaf>
         const core::ScheduledInterval& interval = intervals[i];
         std::vector<int> order = interval.volumes;
         if (reversed) std::reverse(order.begin(), order.end());
+        if (interval.surfaces.empty()) addPending(interval, reversed, leaves);
         reversed = !reversed;
-        if (interval.surfaces.empty()) {
-            for (int v : order) {
-                if (_pendingVolume != v) flush(leaves);
-                _pendingVolume = v;
-                _volumes[static_cast<std::size_t>(v)].pending.push_back(interval.depth);
-            }
-            continue;
-        }
+        if (interval.surfaces.empty()) continue;
         flush(leaves);
         composeMixed(region, intervals, i, order, leaves);
     }

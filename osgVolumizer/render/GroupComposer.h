@@ -37,9 +37,8 @@ struct MergeGroup
 
 /// Makes the leaves of one group, far to near.
 ///
-/// A volume by itself is one leaf. Where a few surfaces are in one volume, their fragments are sorted: see
-/// LayerLeaf; that is exact. Where there are many triangles or several volumes, depth is cut into
-/// intervals. An interval of a volume and surfaces is drawn as: the surfaces' nearest
+/// A volume by itself is one leaf. Where a few surfaces are in volumes, their fragments are sorted: see
+/// LayerLeaf; that is exact. Where there are many triangles, depth is cut into intervals. An interval of a volume and surfaces is drawn as: the surfaces' nearest
 /// depth into a layer buffer, the volume behind that depth, the surfaces, the volume in front of it; this is exact
 /// where a pixel has one surface in the interval, and off by the interval's thickness where it has
 /// more. Several volumes are drawn in slabs one step thick, alternating who goes first: the error of drawing one
@@ -89,8 +88,13 @@ private:
     void prepareVolumes();
     void prepareSurfaces(std::vector<OrderedLeaf>& leaves);
     std::vector<Region> findRegions() const;
+    static bool leavesDepth(const Surface& surface);
     bool isWorthSorting(const Region& region) const;
     void composeSorted(const Region& region, std::vector<OrderedLeaf>& leaves);
+    void composeVolumes(const std::vector<core::ScheduledInterval>& intervals,
+                        std::vector<OrderedLeaf>& leaves);
+    void addPending(const core::ScheduledInterval& interval, bool reversed,
+                    std::vector<OrderedLeaf>& leaves);
     void addLayerStep(LayerLeaf::Step step, int index, const Region& region, double depth,
                       std::vector<OrderedLeaf>& leaves);
     void addSurfaces(LayerLeaf::Step step, int index, const Region& region, double depth,

@@ -1,13 +1,13 @@
 #include "VolumeProgram.h"
 
+#include "SharedStateSets.h"
+
 #include <osg/AlphaFunc>
 #include <osg/BlendFunc>
 #include <osg/CullFace>
 #include <osg/Depth>
 #include <osg/Program>
 
-#include <map>
-#include <mutex>
 
 namespace osgVolumizer {
 namespace render {
@@ -89,12 +89,7 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
 
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
 {
-    static std::mutex mutex;
-    static std::map<std::uint64_t, osg::ref_ptr<osg::StateSet>> sets;
-    std::lock_guard<std::mutex> lock(mutex);
-    osg::ref_ptr<osg::StateSet>& set = sets[features.key()];
-    if (!set) set = makeStateSet(features);
-    return set;
+    return sharedStateSet(features.key(), [&features]() { return makeStateSet(features); });
 }
 
 } // namespace render

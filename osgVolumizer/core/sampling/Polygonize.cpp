@@ -46,10 +46,11 @@ SurfaceLattice viewLattice(const ViewFamily& family, double nearest, double fart
     double spacing = h * std::max(1.0, std::ceil((high - low) / h / maximum));
     while (std::ceil(high / spacing) - std::floor(low / spacing) > maximum)
         spacing *= 2.0;
+    const double layers = std::ceil(high / spacing) - std::floor(low / spacing);
     SurfaceLattice lattice;
     lattice.spacing = spacing;
     lattice.farDepth = std::ceil(high / spacing) * spacing - family.anchorDepth;
-    lattice.count = static_cast<int>(std::ceil(high / spacing) - std::floor(low / spacing));
+    lattice.count = layers >= 1.0 && layers <= maximum ? static_cast<int>(layers) : 0;
     return lattice;
 }
 
@@ -206,8 +207,8 @@ Status Polygonizer::Private::measure()
             farthest = std::max(farthest, d);
         }
     };
-    // The extremes lie in few blocks: those that reach farthest come first, the others are looked into
-    // only if they may reach farther still.
+    // The extremes lie in few blocks: those that reach farthest come first, the others are looked
+    // into only if they may reach farther still.
     struct Range
     {
         double nearest, farthest;
@@ -240,11 +241,16 @@ Status Polygonizer::Private::cut(const SurfaceLattice& lattice, double eyeDepth,
                                  PolygonizedFaces& out)
 {
     plan.lattice = lattice;
-    // The surfaces that the set reaches; a set without volume reaches none.
     const double scale = 1.0 / lattice.spacing;
+    if (!std::isfinite(lattice.farDepth) || !(scale > 0.0) || !std::isfinite(scale))
+        return {ErrorCode::VALUE_INVALID, "polygonize: surfaces at a distance of " +
+                                              std::to_string(lattice.spacing) +
+                                              " are beyond double precision."};
+    // The surfaces that the set reaches; a set without volume reaches none.
     plan.firstSurface = surfacesPassed((lattice.farDepth - farthest) * scale, 0, lattice.count);
     plan.surfaceCount =
         surfacesPassed((lattice.farDepth - nearest) * scale, 0, lattice.count) - plan.firstSurface;
+    if (Status s = Slicer::checkSize(plan); !s) return s;
     const auto n = static_cast<std::size_t>(plan.surfaceCount);
     surfaceDepths.resize(n);
     order.resize(n);

@@ -38,6 +38,9 @@ void main()
     c = vec4(vertexColor.rgb, -log2(max(1.0 - vertexColor.a, 5.9604645e-8)));
 #endif
 #endif
-    float alpha = 1.0 - exp2(-c.a * layer * length(frameToUnits * direction));
+    float depth = 0.6931471806 * c.a * layer * length(frameToUnits * direction); // optical
+    // 1 - exp(-depth) without cancelling the digits of thin layers.
+    float alpha =
+        depth < 0.01 ? depth * (1.0 - depth * (0.5 - depth * 0.16666667)) : 1.0 - exp(-depth);
     fragColor = vec4(c.rgb * alpha, alpha);
 }
