@@ -18,8 +18,8 @@ namespace {
 
 const char* const usage = R"(Usage: osgVolumizerChart [options]
   --scenes A,B,..     default all
-  --renderers A,B,..  of slabs slices slabs:BRICK slices:BRICK bare fixed raytraced multipass vtkgpu
-                      vtkcpu; default the first two and everything after bare that was built
+  --renderers A,B,..  of slabs slices slabs:BRICK slices:BRICK bare bareintegral fixed raytraced
+                      multipass vtkgpu vtkcpu; default all that were built, bricks aside
   --steps A,B,..      sample distances in voxels, default 8,4,2,1,0.5,0.25
   --rounds N          default 5
   --csv FILE          writes the points
@@ -32,7 +32,7 @@ const char* const usage = R"(Usage: osgVolumizerChart [options]
 struct Arguments
 {
     std::vector<std::string> scenes;
-    std::vector<std::string> renderers{"slabs",     "slices",    "bare",   "fixed",
+    std::vector<std::string> renderers{"slabs",     "slices",    "bare",   "bareintegral", "fixed",
                                        "raytraced", "multipass", "vtkgpu", "vtkcpu"};
     MeasureOptions measure;
     std::string csv;
