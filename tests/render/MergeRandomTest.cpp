@@ -59,7 +59,8 @@ struct RandomScene
     double bound = 0.0;
 };
 
-/// A field 0.5 + 0.5 sin(k.p + phase) under a table whose opacity is at most `alpha`, linear in the value.
+/// A field 0.5 + 0.5 sin(k.p + phase) under a table whose opacity is at most `alpha`, linear in the
+/// value.
 struct Bounded
 {
     double k = 0.0, alpha = 0.0;
@@ -67,15 +68,17 @@ struct Bounded
 
 /// The most that a pixel away from silhouettes may be off by, with steps of h voxels along the ray.
 ///
-/// The midpoint rule is off by at most h^2/8 times the variation of the integrand's derivative. Along a ray of length
-/// L the value v has |v'| <= k/2 and a second derivative (with the jumps of v' at the faces of trilinear cells) of k^2/2.
-/// Extinction t(v) = -ln(1 - a(v)) has |t'| <= t1 = alpha/(1-alpha) and |t''| <= t1^2; emission t(v) c(v), with colours c
-/// linear in v, has |(tc)'| <= t1 + t and |(tc)''| <= t1^2 + 2 t1. The error of the emission shows as it is, that of the
-/// optical depth times what is behind, at most 1. Within a cell of the rule the order of emission and absorption is lost:
-/// h^3/12 t |(tc)'| a cell.
+/// The midpoint rule is off by at most h^2/8 times the variation of the integrand's derivative.
+/// Along a ray of length L the value v has |v'| <= k/2 and a second derivative (with the jumps of
+/// v' at the faces of trilinear cells) of k^2/2. Extinction t(v) = -ln(1 - a(v)) has |t'| <= t1 =
+/// alpha/(1-alpha) and |t''| <= t1^2; emission t(v) c(v), with colours c linear in v, has |(tc)'|
+/// <= t1 + t and |(tc)''| <= t1^2 + 2 t1. The error of the emission shows as it is, that of the
+/// optical depth times what is behind, at most 1. Within a cell of the rule the order of emission
+/// and absorption is lost: h^3/12 t |(tc)'| a cell.
 ///
-/// Overlapping volumes alternate: slab i leaves +-q_i, q = h^2/2 tA tB |cA - cB|, and an alternating sum is at most half
-/// of its ends plus half of its variation. Every surface on the way can start a new sum.
+/// Overlapping volumes alternate: slab i leaves +-q_i, q = h^2/2 tA tB |cA - cB|, and an
+/// alternating sum is at most half of its ends plus half of its variation. Every surface on the way
+/// can start a new sum.
 double boundOf(const std::vector<Bounded>& volumes, int surfaces)
 {
     const double h = 1.42; // the corner of a view of 70 degrees
@@ -114,8 +117,7 @@ std::unique_ptr<RandomScene> makeScene(unsigned seed)
             return 0.5 + 0.5 * std::sin(glm::dot(wave, p) + phase);
         });
         const Points points = {{0.0, dice.color(0.0, 0.02)}, {1.0, dice.color(0.0, 0.12)}};
-        bounded.push_back(
-            {glm::length(wave), std::max(points[0].color.a, points[1].color.a)});
+        bounded.push_back({glm::length(wave), std::max(points[0].color.a, points[1].color.a)});
         const double mirror = dice.upTo(4) == 0 ? -1.0 : 1.0;
         const osg::Matrixd place =
             i == 0 ? osg::Matrixd()
@@ -135,7 +137,8 @@ std::unique_ptr<RandomScene> makeScene(unsigned seed)
             const glm::vec3 a(dice.point(-3, 11)), b(dice.point(-3, 11)), c(dice.point(-3, 11));
             r->scene.addQuad({a, b, b + c - a, c}, color, opaque);
         } else {
-            r->scene.addMesh(sphereMesh(dice.point(0, 8), dice.between(1, 5), 10, 6), color, opaque);
+            r->scene.addMesh(sphereMesh(dice.point(0, 8), dice.between(1, 5), 10, 6), color,
+                             opaque);
         }
     }
     osg::Vec3d center(middle, middle, middle), direction = dice.direction();

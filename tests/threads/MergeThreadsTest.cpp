@@ -1,5 +1,5 @@
-// A mixed scene that changes while it is drawn, in every threading model, with two contexts. Built with
-// -DOSGVOLUMIZER_SANITIZE=thread this is the test for data races.
+// A mixed scene that changes while it is drawn, in every threading model, with two contexts. Built
+// with -DOSGVOLUMIZER_SANITIZE=thread this is the test for data races.
 
 #include <render/MixedScene.h>
 
@@ -62,11 +62,14 @@ private:
         // Tables and voxels change.
         Points points = THIN;
         if (!still) points[1].color.a += 0.01 * (frame % 7);
-        EXPECT_TRUE(
-            _scene.volumes()[0]->getLookupTable()->setPoints(points, LookupTable::RANGE_FRACTION).ok());
+        EXPECT_TRUE(_scene.volumes()[0]
+                        ->getLookupTable()
+                        ->setPoints(points, LookupTable::RANGE_FRACTION)
+                        .ok());
         if (frame % 6 == 2) _voxels[1]->dirty();
         const double period = still || frame % 4 ? 1.0 : 0.5;
-        EXPECT_TRUE(_scene.volumes()[1]->setSamplingPeriod(osg::Vec3d(period, period, period)).ok());
+        EXPECT_TRUE(
+            _scene.volumes()[1]->setSamplingPeriod(osg::Vec3d(period, period, period)).ok());
     }
 
     MixedScene& _scene;
@@ -84,9 +87,8 @@ RenderOptions viewOf()
     return options;
 }
 
-class MergeThreads
-    : public support::GLTest,
-      public ::testing::WithParamInterface<osgViewer::ViewerBase::ThreadingModel>
+class MergeThreads : public support::GLTest,
+                     public ::testing::WithParamInterface<osgViewer::ViewerBase::ThreadingModel>
 {
 };
 
@@ -129,10 +131,11 @@ TEST_P(MergeThreads, ChangingSceneEndsLikeAStillOne)
     EXPECT_LE(support::compare(other, still).maximum, 1e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, MergeThreads,
-                         ::testing::Values(osgViewer::ViewerBase::SingleThreaded,
-                                           osgViewer::ViewerBase::CullDrawThreadPerContext,
-                                           osgViewer::ViewerBase::DrawThreadPerContext,
-                                           osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext));
+INSTANTIATE_TEST_SUITE_P(
+    Models, MergeThreads,
+    ::testing::Values(osgViewer::ViewerBase::SingleThreaded,
+                      osgViewer::ViewerBase::CullDrawThreadPerContext,
+                      osgViewer::ViewerBase::DrawThreadPerContext,
+                      osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext));
 
 } // namespace

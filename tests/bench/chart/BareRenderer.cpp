@@ -58,14 +58,7 @@ class BareRenderer : public Renderer
 public:
     explicit BareRenderer(bool integral) : _integral(integral) {}
 
-<<<<<<< HEAD
-    std::string name() const override
-    {
-        return _variant.empty() ? "bare march" : "bare: " + _variant;
-    }
-=======
     std::string name() const override { return _integral ? "bare march, integral" : "bare march"; }
->>>>>>> refs/heads/bench
     Status open(const ChartScene& scene) override;
     Status setStep(double stepVoxel) override
     {
@@ -76,17 +69,6 @@ public:
     support::FloatImage picture() override;
 
 private:
-<<<<<<< HEAD
-    bool has(const char* word) const { return _variant.find(word) != std::string::npos; }
-    int number(const char* word, int otherwise) const
-    {
-        const auto at = _variant.find(word);
-        return at == std::string::npos
-                   ? otherwise
-                   : std::atoi(_variant.c_str() + at + std::string(word).size());
-    }
-=======
->>>>>>> refs/heads/bench
     Status makeProgram();
     void makeVoxels(const ChartScene& scene);
     void makeTable(const ChartScene& scene);
@@ -105,36 +87,15 @@ private:
 
 Status BareRenderer::makeProgram()
 {
-<<<<<<< HEAD
-    std::string header = "#version 330\n";
-    std::istringstream words(_variant);
-    for (std::string w; words >> w;) {
-        const auto eq = w.find('=');
-        header += "#define " +
-                  (eq == std::string::npos ? w : w.substr(0, eq) + " " + w.substr(eq + 1)) + "\n";
-    }
-    const std::string vertex = "#version 330\nlayout(location = 0) in vec3 position;\n"
-                               "uniform mat4 toClip;\n"
-                               "void main() { gl_Position = toClip * vec4(position, 1.0); }\n";
-=======
->>>>>>> refs/heads/bench
     const std::string fragment =
         std::string("#version 330\n") + (_integral ? "#define INTEGRAL\n" : "") +
         readText(OSGVOLUMIZER_SOURCE_DIR "/tests/bench/chart/march.frag.glsl");
     _program = glCreateProgram();
-<<<<<<< HEAD
-    for (const auto& part :
-         {std::make_pair(GL_VERTEX_SHADER, vertex), {GL_FRAGMENT_SHADER, fragment}}) {
-        const GLuint shader = glCreateShader(part.first);
-        const char* text = part.second.c_str();
-        glShaderSource(shader, 1, &text, nullptr);
-=======
     const std::array<std::pair<GLenum, const char*>, 2> sources{
         {{GL_VERTEX_SHADER, vertexShader}, {GL_FRAGMENT_SHADER, fragment.c_str()}}};
     for (const auto& source : sources) {
         const GLuint shader = glCreateShader(source.first);
         glShaderSource(shader, 1, &source.second, nullptr);
->>>>>>> refs/heads/bench
         glCompileShader(shader);
         glAttachShader(_program, shader);
     }
@@ -157,48 +118,9 @@ void BareRenderer::makeVoxels(const ChartScene& scene)
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_3D, texture);
     const glm::ivec3 n = scene.size;
-<<<<<<< HEAD
-    const GLenum type = scene.type == VoxelType::UINT8    ? GL_UNSIGNED_BYTE
-                        : scene.type == VoxelType::UINT16 ? GL_UNSIGNED_SHORT
-                                                          : GL_FLOAT;
-    GLenum internalFormat = scene.type == VoxelType::UINT8    ? GL_R8
-                            : scene.type == VoxelType::UINT16 ? GL_R16
-                                                              : GL_R32F;
-    if (has("AS_R8")) internalFormat = GL_R8;
-    if (has("AS_R16 ")) internalFormat = GL_R16;
-    if (has("AS_R16F")) internalFormat = GL_R16F;
-    if (has("AS_R32F")) internalFormat = GL_R32F;
-    const double top = scene.type == VoxelType::FLOAT32 ? 1.0 : scene.range.y;
-    if (has("PACKED")) {
-        const std::vector<double> v = scene.values();
-        std::vector<float> packed;
-        const auto at = [&](int x, int y, int z) {
-            x = std::min(x, n.x - 1);
-            y = std::min(y, n.y - 1);
-            return float(
-                v[std::size_t(x) + std::size_t(n.x) * (std::size_t(y) + std::size_t(n.y) * z)] /
-                top);
-        };
-        for (int z = 0; z < n.z; ++z)
-            for (int y = 0; y < n.y; ++y)
-                for (int x = 0; x < n.x; ++x)
-                    for (int k = 0; k < 4; ++k)
-                        packed.push_back(at(x + (k & 1), y + (k >> 1), z));
-        glTexImage3D(GL_TEXTURE_3D, 0, has("PACKED16") ? GL_RGBA16F : GL_RGBA32F, n.x, n.y, n.z, 0,
-                     GL_RGBA, GL_FLOAT, packed.data());
-    } else {
-        glTexImage3D(GL_TEXTURE_3D, 0, internalFormat, n.x, n.y, n.z, 0, GL_RED, type,
-                     scene.voxels.data());
-    }
-    const GLint filter = has("FILTER_NEAREST") ? GL_NEAREST : GL_LINEAR;
-    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, filter);
-    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, filter);
-    const GLint wrap = has("REPEAT") ? GL_REPEAT : GL_CLAMP_TO_EDGE;
-=======
     glTexImage3D(GL_TEXTURE_3D, 0, GL_R32F, n.x, n.y, n.z, 0, GL_RED, GL_FLOAT, fractions.data());
     for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
         glTexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
->>>>>>> refs/heads/bench
     for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
         glTexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
     const glm::vec3 scale(1.0 / glm::dvec3(n)), offset((0.5 - scene.origin) / glm::dvec3(n));
@@ -209,151 +131,6 @@ void BareRenderer::makeVoxels(const ChartScene& scene)
 
 void BareRenderer::makeTable(const ChartScene& scene)
 {
-<<<<<<< HEAD
-    const auto function = core::TransferFunction::create(scene.table);
-    const int count = number("TEXELS=", 4096);
-    std::vector<glm::vec4> texels = function->tabulateExtinction(count, 0.0, 1.0, false);
-    for (glm::vec4& t : texels) {
-        t.a *= float(1.0 / std::log(2.0));
-        if (has("PREMULTIPLIED")) {
-            t.a = 1.0f - std::exp2(-t.a * number("STEP=", 1));
-            t.r *= t.a, t.g *= t.a, t.b *= t.a;
-        }
-    }
-    const int avg = number("AVG2D=", 0);
-    if (avg || has("AVG1D")) {
-        const int m = 8, n = avg ? avg : count; // sub-samples per entry
-        // entry i stands for [i - 1/2, i + 1/2]/(n-1); prefix over sub-samples
-        std::vector<glm::dvec4> prefix(std::size_t(n) * m + 1);
-        const auto fn = *function;
-        for (int i = 0; i < n * m; ++i) {
-            const double v = ((i + 0.5) / m - (avg ? 0.5 : 0.5)) / (n - 1);
-            const glm::dvec4 c = fn.evaluate(std::min(std::max(v, 0.0), 1.0));
-            const double e = core::extinctionFromOpacity(c.a) / std::log(2.0);
-            prefix[std::size_t(i) + 1] =
-                prefix[std::size_t(i)] + glm::dvec4(glm::dvec3(c) * e, e) / double(m);
-        }
-        texels.clear();
-        if (avg && has("FULL")) {
-            const double d = 1.0 / number("INVSTEP=", 1);
-            std::vector<glm::dvec4> f; // colour, extinction (natural) of fine values
-            for (int i = 0; i < n * m; ++i) {
-                const glm::dvec4 c =
-                    fn.evaluate(std::min(std::max(((i + 0.5) / m - 0.5) / (n - 1), 0.0), 1.0));
-                f.push_back(glm::dvec4(glm::dvec3(c), core::extinctionFromOpacity(c.a)));
-            }
-            for (int a = 0; a < n; ++a)
-                for (int b = 0; b < n; ++b) {
-                    // from a to b in fine steps
-                    const int k = std::max(1, std::abs(b - a)) * m;
-                    const int stride = std::max(1, k / 64);
-                    const int cnt = k / stride;
-                    double T = 1.0;
-                    glm::dvec3 C(0.0);
-                    const double h = d / cnt;
-                    for (int s2 = 0; s2 < cnt; ++s2) {
-                        const double x =
-                            a == b ? a + (s2 + 0.5) / cnt - 0.5 : a + (b - a) * (s2 + 0.5) / cnt;
-                        const glm::dvec4& c =
-                            f[std::size_t(std::min(std::max(int((x + 0.5) * m), 0), n * m - 1))];
-                        const double T1 = T * std::exp(-c.a * h);
-                        C += (T - T1) * glm::dvec3(c);
-                        T = T1;
-                    }
-                    texels.push_back(T < 1.0 ? glm::vec4(C / (1.0 - T), -std::log2(T) / d)
-                                             : glm::vec4(0.0f));
-                }
-        } else if (avg) {
-            for (int a = 0; a < n; ++a)
-                for (int b = 0; b < n; ++b) {
-                    const int lo = std::min(a, b), hi = std::max(a, b);
-                    const glm::dvec4 s =
-                        lo == hi ? prefix[std::size_t(hi + 1) * m] - prefix[std::size_t(lo) * m]
-                                 : (prefix[std::size_t(hi) * m + m / 2] -
-                                    prefix[std::size_t(lo) * m + m / 2]) /
-                                       double(hi - lo);
-                    texels.push_back(s.a > 0.0 ? glm::vec4(glm::dvec3(s) / s.a, s.a)
-                                               : glm::vec4(0.0f));
-                }
-        } else {
-            for (int a = 0; a <= n; ++a)
-                texels.push_back(
-                    glm::vec4(prefix[std::min(std::size_t(a) * m + m / 2, prefix.size() - 1)]));
-        }
-    }
-    GLuint texture = 0;
-    glGenTextures(1, &texture);
-    glActiveTexture(GL_TEXTURE1);
-    const GLint format = has("HALF_TABLE")      ? GL_RGBA16F
-                         : has("TABLE_RGBA8")   ? GL_RGBA8
-                         : has("TABLE_RGBA16U") ? GL_RGBA16
-                                                : GL_RGBA32F;
-    if (has("TABLE_1D")) {
-        glBindTexture(GL_TEXTURE_1D, texture);
-        glTexImage1D(GL_TEXTURE_1D, 0, format, count, 0, GL_RGBA, GL_FLOAT, texels.data());
-        glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-        glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-        glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    } else if ((has("TABLE_BUFFER") || has("AVG"))) {
-        GLuint buffer = 0;
-        glGenBuffers(1, &buffer);
-        glBindBuffer(GL_TEXTURE_BUFFER, buffer);
-        glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(texels.size() * sizeof(glm::vec4)),
-                     texels.data(), GL_STATIC_DRAW);
-        glBindTexture(GL_TEXTURE_BUFFER, texture);
-        glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer);
-        glUniform1i(uniform("tableBuffer"), 1);
-    } else if (has("TABLE_UBO")) {
-        GLuint buffer = 0;
-        glGenBuffers(1, &buffer);
-        glBindBufferBase(GL_UNIFORM_BUFFER, 0, buffer);
-        glBufferData(GL_UNIFORM_BUFFER, GLsizeiptr(texels.size() * sizeof(glm::vec4)),
-                     texels.data(), GL_STATIC_DRAW);
-        glUniformBlockBinding(_program, glGetUniformBlockIndex(_program, "Table"), 0);
-    } else {
-        glBindTexture(GL_TEXTURE_2D, texture);
-        glTexImage2D(GL_TEXTURE_2D, 0, format, count, 1, 0, GL_RGBA, GL_FLOAT, texels.data());
-        const GLint filter =
-            has("TABLE_NEAREST") || has("TABLE_FILTER_NEAREST") ? GL_NEAREST : GL_LINEAR;
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    }
-    glUniform1i(uniform("lookupTable"), 1);
-    glUniform1i(uniform("lookupTable1D"), 1);
-    // Texels of normalised types are the fraction of the range.
-    glUniform2f(uniform("valueToTable"), float((count - 1.0) / count), float(0.5 / count));
-    glUniform4f(uniform("tableInfo"), float(count), float(count - 1), 0.5f, 0.0f);
-}
-
-void BareRenderer::makeBox(const ChartScene& scene)
-{
-    const glm::vec3 lo(scene.boxMin()), hi(scene.boxMax());
-    std::vector<glm::vec3> v;
-    for (int i = 0; i < 8; ++i)
-        v.emplace_back(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
-    const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                             {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    std::vector<glm::vec3> triangles;
-    for (const auto& f : faces)
-        for (int k : {0, 1, 2, 0, 2, 3})
-            triangles.push_back(v[std::size_t(f[k])]);
-    GLuint buffer = 0;
-    glGenVertexArrays(1, &_vertexArray);
-    glBindVertexArray(_vertexArray);
-    glGenBuffers(1, &buffer);
-    glBindBuffer(GL_ARRAY_BUFFER, buffer);
-    glBufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(glm::vec3)),
-                 triangles.data(), GL_STATIC_DRAW);
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
-    glEnableVertexAttribArray(0);
-    _count = int(triangles.size());
-    glUniform3fv(uniform("boxMin"), 1, glm::value_ptr(lo));
-    glUniform3fv(uniform("boxMax"), 1, glm::value_ptr(hi));
-    glEnable(GL_CULL_FACE);
-    glCullFace(GL_FRONT);
-=======
     const std::vector<glm::vec4> texels =
         tableTexels(*core::TransferFunction::create(scene.table), _integral);
     GLuint buffer = 0, texture = 0;
@@ -367,7 +144,6 @@ void BareRenderer::makeBox(const ChartScene& scene)
     glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer);
     glUniform1i(uniform("table"), 1);
     glUniform1f(uniform("lastEntry"), float(TABLE_SIZE - 1));
->>>>>>> refs/heads/bench
 }
 
 void BareRenderer::makeTarget()
@@ -417,17 +193,8 @@ void BareRenderer::makeBox(const ChartScene& scene)
 // depth 1, or in orthographic views a point of the eye plane and the view axis.
 void BareRenderer::setRays(const ChartScene& scene)
 {
-<<<<<<< HEAD
-    const glm::dmat4 toClip =
-        support::toGlm(scene.view.projection) * support::toGlm(scene.view.view);
-    const glm::mat4 f(toClip);
-    glUniformMatrix4fv(uniform("toClip"), 1, GL_FALSE, glm::value_ptr(f));
-    const glm::dmat4 view = support::toGlm(scene.view.view),
-                     p = support::toGlm(scene.view.projection);
-=======
     const glm::dmat4 view = support::toGlm(scene.view.view);
     const glm::dmat4 projection = support::toGlm(scene.view.projection);
->>>>>>> refs/heads/bench
     const glm::dmat4 toWorld = glm::inverse(view);
     const bool orthographic = projection[2][3] == 0.0;
     const auto windowToWorld = [&](double x, double y) {
@@ -439,16 +206,6 @@ void BareRenderer::setRays(const ChartScene& scene)
         return glm::dvec3(toWorld * (orthographic ? glm::dvec4(eyeX, eyeY, 0.0, 1.0)
                                                   : glm::dvec4(eyeX, eyeY, -1.0, 0.0)));
     };
-<<<<<<< HEAD
-    const glm::dvec3 zero(toWorld * eyePoint(0, 0));
-    window[0] = glm::dvec3(toWorld * eyePoint(1, 0)) - zero;
-    window[1] = glm::dvec3(toWorld * eyePoint(0, 1)) - zero;
-    window[2] = zero;
-    constant[2] =
-        glm::dvec3(toWorld * (orthographic ? glm::dvec4(0, 0, -1, 0) : glm::dvec4(0, 0, 0, 1)));
-    const glm::mat3 origin(orthographic ? window : constant),
-        direction(orthographic ? constant : window);
-=======
     const glm::dvec3 corner = windowToWorld(0.0, 0.0);
     const glm::mat3 linear(windowToWorld(1.0, 0.0) - corner, windowToWorld(0.0, 1.0) - corner,
                            corner);
@@ -457,7 +214,6 @@ void BareRenderer::setRays(const ChartScene& scene)
     const glm::mat3& origin = orthographic ? linear : constant;
     const glm::mat3& direction = orthographic ? constant : linear;
     const glm::mat4 toClip(projection * view);
->>>>>>> refs/heads/bench
     glUniformMatrix3fv(uniform("rayOrigin"), 1, GL_FALSE, glm::value_ptr(origin));
     glUniformMatrix3fv(uniform("rayDirection"), 1, GL_FALSE, glm::value_ptr(direction));
     glUniformMatrix4fv(uniform("toClip"), 1, GL_FALSE, glm::value_ptr(toClip));
