@@ -2,6 +2,7 @@
 
 #include "Error.h"
 #include "render/ContextResources.h"
+#include "render/SharedStateSets.h"
 #include "render/TableTextures.h"
 
 #include <cmath>
@@ -93,6 +94,7 @@ void VolumeAppearance::resizeGLObjectBuffers(unsigned int maximum)
     osg::Group::resizeGLObjectBuffers(maximum);
     if (_voxels) _voxels->resizeGLObjectBuffers(maximum);
     _tableTextures->resizeGLObjectBuffers(maximum);
+    render::resizeSharedStateSets(maximum);
 }
 
 void VolumeAppearance::releaseGLObjects(osg::State* state) const

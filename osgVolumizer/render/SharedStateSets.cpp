@@ -38,5 +38,12 @@ void releaseSharedStateSets(osg::State* state)
         set.second->releaseGLObjects(state);
 }
 
+void resizeSharedStateSets(unsigned int maximum)
+{
+    std::lock_guard<std::mutex> lock(setsMutex());
+    for (const auto& set : sets())
+        set.second->resizeGLObjectBuffers(maximum);
+}
+
 } // namespace render
 } // namespace osgVolumizer

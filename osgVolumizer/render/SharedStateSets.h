@@ -29,6 +29,9 @@ sharedStateSet(SharedState key, const std::function<osg::ref_ptr<osg::StateSet>(
 /// Releases what they have in one context, or in all for null: a later context of the same number
 /// has to link their programs again.
 void releaseSharedStateSets(osg::State* state);
+/// Makes room for more contexts before several of them draw at once: OSG's own growth on first use
+/// is not thread safe.
+void resizeSharedStateSets(unsigned int maximum);
 
 } // namespace render
 } // namespace osgVolumizer
