@@ -178,6 +178,8 @@ osgVolumizer::VolumeAppearance {{
     Version Integers 1 1
     Technique Text 1 "AUTOMATIC"
     Interpolation Text 1 "LINEAR"
+    Lookup Text 1 "AUTOMATIC_LOOKUP"
+    ExactFiltering Integers 1 0
     SamplingMode Text 1 "VIEWPORT_ALIGNED"
     SamplingSpace Text 1 "OBJECT"
     SamplingPeriod Doubles 3 0.5 0.5 0.5

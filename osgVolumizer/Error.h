@@ -17,8 +17,8 @@ protected:
     ~ErrorHandler() override = default;
 };
 
-/// Installs the handler of the process; null restores the default. Whatever the handler, errors also go to
-/// osg::notify(osg::WARN), each text at most once in a row.
+/// Installs the handler of the process; null restores the default. Whatever the handler, errors
+/// also go to osg::notify(osg::WARN), each text at most once in a row.
 OSGVOLUMIZER_EXPORT void setErrorHandler(ErrorHandler* handler);
 /// The last error of any thread; code NONE when there was none since clearLastError().
 OSGVOLUMIZER_EXPORT Status getLastError();

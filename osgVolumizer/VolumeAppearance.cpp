@@ -2,6 +2,7 @@
 
 #include "Error.h"
 #include "render/ContextResources.h"
+#include "render/SharedStateSets.h"
 #include "render/TableTextures.h"
 
 #include <cmath>
@@ -10,11 +11,12 @@ namespace osgVolumizer {
 
 namespace {
 
-Status refuse(const VolumeAppearance& appearance, const char* field, double value, const char* expected)
+Status refuse(const VolumeAppearance& appearance, const char* field, double value,
+              const char* expected)
 {
-    Status status(ErrorCode::VALUE_INVALID, "VolumeAppearance \"" + appearance.getName() + "\": " + field +
-                                                " is " + std::to_string(value) + ", expected " +
-                                                expected);
+    Status status(ErrorCode::VALUE_INVALID, "VolumeAppearance \"" + appearance.getName() +
+                                                "\": " + field + " is " + std::to_string(value) +
+                                                ", expected " + expected);
     reportError(status);
     return status;
 }
@@ -38,7 +40,10 @@ VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp&
 
 VolumeAppearance::~VolumeAppearance() = default;
 
-void VolumeAppearance::setVoxels(Voxels* voxels) { _voxels = voxels; }
+void VolumeAppearance::setVoxels(Voxels* voxels)
+{
+    _voxels = voxels;
+}
 
 void VolumeAppearance::setLookupTable(LookupTable* table)
 {
@@ -119,6 +124,7 @@ void VolumeAppearance::resizeGLObjectBuffers(unsigned int maximum)
     osg::Group::resizeGLObjectBuffers(maximum);
     if (_voxels) _voxels->resizeGLObjectBuffers(maximum);
     _tableTextures->resizeGLObjectBuffers(maximum);
+    render::resizeSharedStateSets(maximum);
 }
 
 void VolumeAppearance::releaseGLObjects(osg::State* state) const

@@ -19,26 +19,38 @@ class OSGVOLUMIZER_EXPORT VolumeAppearance : public osg::Group
 public:
     META_Node(osgVolumizer, VolumeAppearance)
 
-    /// Slabs: exact segments, second order. Slices: one polygon per sampling surface, first order.
-    /// AUTOMATIC takes slabs wherever the geometry is convex.
-    enum Technique { AUTOMATIC, SLICES, SLABS };
-    /// How a value between samples comes about. NEAREST: that of the nearest sample. LINEAR: trilinear.
-    /// CUBIC: passes through the samples like LINEAR, with continuous derivatives and third-order
-    /// accuracy, and may overshoot (Keys, "Cubic convolution interpolation for digital image
-    /// processing", IEEE ASSP 29, 1981); 64 samples each, so slow; bricks need overlap 3.
-    enum Interpolation { NEAREST, LINEAR, CUBIC };
+        /// Slabs: exact segments, second order. Slices: one polygon per sampling surface, first
+        /// order. AUTOMATIC takes slabs wherever the geometry is convex.
+        enum Technique {
+            AUTOMATIC,
+            SLICES,
+            SLABS
+        };
+    /// How a value between samples comes about. NEAREST: that of the nearest sample. LINEAR:
+    /// trilinear. CUBIC: passes through the samples like LINEAR, with continuous derivatives and
+    /// third-order accuracy, and may overshoot (Keys, "Cubic convolution interpolation for digital
+    /// image processing", IEEE ASSP 29, 1981); 64 samples each, so slow; bricks need overlap 3.
+    enum Interpolation
+    {
+        NEAREST,
+        LINEAR,
+        CUBIC
+    };
     /// When the lookup table is applied.
-    enum Lookup {
+    enum Lookup
+    {
         /// PREINTEGRATED for tables with jumps or peaks that sampling would miss, else
         /// AFTER_INTERPOLATION. The reason is sent to osg::notify(osg::INFO).
         AUTOMATIC_LOOKUP,
         /// Values are interpolated, then looked up: sharp, second order for smooth tables.
         AFTER_INTERPOLATION,
-        /// Samples are looked up; extinction, and colour weighted by extinction, are interpolated. For
+        /// Samples are looked up; extinction, and colour weighted by extinction, are interpolated.
+        /// For
         /// values that are labels, between which there is nothing. Eight lookups a sample (64
         /// for CUBIC), but still no upload when the table changes.
         BEFORE_INTERPOLATION,
-        /// Between two samples the value is taken to run linearly, and the table is averaged over that run
+        /// Between two samples the value is taken to run linearly, and the table is averaged over
+        /// that run
         /// exactly: no value is skipped, however sharp the table (Engel, Kraus and Ertl,
         /// Graphics Hardware 2001, by integral functions).
         PREINTEGRATED
@@ -75,8 +87,7 @@ public:
     };
 
     VolumeAppearance();
-    VolumeAppearance(const VolumeAppearance& o,
-                     const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
+    VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
     void setVoxels(Voxels* voxels);
     Voxels* getVoxels() const { return _voxels.get(); }
@@ -90,8 +101,9 @@ public:
     Interpolation getInterpolation() const { return _interpolation; }
     void setLookup(Lookup lookup) { _lookup = lookup; }
     Lookup getLookup() const { return _lookup; }
-    /// Texture units often interpolate with 8-bit weights, and some also round 8-bit samples to 8 bits. On:
-    /// interpolation in 32-bit floats from fetched samples, about half as fast. Off by default.
+    /// Texture units often interpolate with 8-bit weights, and some also round 8-bit samples to 8
+    /// bits. On: interpolation in 32-bit floats from fetched samples, about half as fast. Off by
+    /// default.
     void setExactFiltering(bool exact) { _exactFiltering = exact; }
     bool getExactFiltering() const { return _exactFiltering; }
     void setRayFunction(RayFunction function) { _rayFunction = function; }
@@ -138,8 +150,8 @@ public:
     int getMaximumSamples() const { return _sampling.maximumSamples; }
     const core::SamplingParameters& getSamplingParameters() const { return _sampling; }
 
-    /// Thickness, in object units, of the layer that the table's opacity is stated for; 0 (default) takes
-    /// the voxels' mean spacing.
+    /// Thickness, in object units, of the layer that the table's opacity is stated for; 0 (default)
+    /// takes the voxels' mean spacing.
     Status setOpacityUnit(double objectUnits);
     double getOpacityUnit() const { return _opacityUnit; }
     /// The unit in force.

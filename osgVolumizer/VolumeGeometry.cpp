@@ -41,12 +41,14 @@ core::TetraSet tetraSetOf(const std::vector<glm::dvec3>& points,
 {
     core::TetraSet set;
     set.vertices.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) set.vertices.setPosition(i, points[i]);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        set.vertices.setPosition(i, points[i]);
     set.indices = std::move(indices);
     return set;
 }
 
-// The regular tetrahedron of edge directions around the box: a corner at box.min, legs three times as long.
+// The regular tetrahedron of edge directions around the box: a corner at box.min, legs three times
+// as long.
 core::TetraSet enclosingTetrahedron(const core::Box3d& box)
 {
     const glm::dvec3 legs = 3.0 * box.size();
@@ -59,7 +61,8 @@ core::TetraSet enclosingTetrahedron(const core::Box3d& box)
 core::TetraSet fiveTetrahedra(const core::Box3d& box)
 {
     std::vector<glm::dvec3> corners;
-    for (int i = 0; i < 8; ++i) corners.push_back(box.corner(i));
+    for (int i = 0; i < 8; ++i)
+        corners.push_back(box.corner(i));
     return tetraSetOf(corners, {0, 1, 2, 4, 3, 2, 1, 7, 5, 4, 7, 1, 6, 7, 4, 2, 1, 2, 4, 7});
 }
 
@@ -69,7 +72,8 @@ core::TetraSet twentyFourTetrahedra(const core::Box3d& box)
     static const core::TetraSet::Index faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                                       {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     std::vector<glm::dvec3> points;
-    for (int i = 0; i < 8; ++i) points.push_back(box.corner(i));
+    for (int i = 0; i < 8; ++i)
+        points.push_back(box.corner(i));
     points.push_back(box.center());
     std::vector<core::TetraSet::Index> indices;
     for (const auto& face : faces) {
@@ -147,7 +151,10 @@ VolumeGeometry::TetraSetPtr VolumeGeometry::getTetraSet() const
     return _private->tetraSet;
 }
 
-unsigned VolumeGeometry::getModifiedCount() const { return _private->modifiedCount; }
+unsigned VolumeGeometry::getModifiedCount() const
+{
+    return _private->modifiedCount;
+}
 
 void VolumeGeometry::accept(osg::NodeVisitor& visitor)
 {
@@ -164,13 +171,24 @@ osg::BoundingBox VolumeGeometry::computeBoundingBox() const
 {
     const core::Box3d box = getTetraSet()->bounds();
     if (box.empty()) return {};
-    return {roundDown(box.min.x), roundDown(box.min.y), roundDown(box.min.z),
-            roundUp(box.max.x),   roundUp(box.max.y),   roundUp(box.max.z)};
+    osg::BoundingBox result;
+    for (int axis = 0; axis < 3; ++axis) {
+        float low = roundDown(box.min[axis]), high = roundUp(box.max[axis]);
+        // OSG takes the bounding sphere from this box, with a centre that is rounded as well: where
+        // floats are coarse, make room for it.
+        if (high - low < 16.0f * (std::nextafter(high, INFINITY) - high)) {
+            low = std::nextafter(low, -INFINITY);
+            high = std::nextafter(high, INFINITY);
+        }
+        result._min[axis] = low;
+        result._max[axis] = high;
+    }
+    return result;
 }
 
 osg::BoundingSphere VolumeGeometry::computeBound() const
 {
-    const osg::BoundingBox box = getBoundingBox();
+    const osg::BoundingBox box = computeBoundingBox();
     if (!box.valid()) return {};
     const osg::Vec3 center = box.center();
     // The centre is rounded to float as well: make room for it.
@@ -180,6 +198,9 @@ osg::BoundingSphere VolumeGeometry::computeBound() const
 
 void VolumeGeometry::drawImplementation(osg::RenderInfo&) const {}
 
-render::GeometryCache& VolumeGeometry::geometryCache() const { return _private->cache; }
+render::GeometryCache& VolumeGeometry::geometryCache() const
+{
+    return _private->cache;
+}
 
 } // namespace osgVolumizer

@@ -14,19 +14,23 @@ namespace render {
 class GeometryCache;
 }
 
-/// The region of space that is filled: tetrahedra, in the object frame. It is drawn with the nearest
-/// VolumeAppearance above it; transforms may stand between the two. Without explicit voxel coordinates
-/// a vertex at p shows the voxel at (p - origin)/spacing.
+/// The region of space that is filled: tetrahedra, in the object frame. It is drawn with the
+/// nearest VolumeAppearance above it; transforms may stand between the two. Without explicit voxel
+/// coordinates a vertex at p shows the voxel at (p - origin)/spacing.
 ///
-/// A Drawable rather than a plain Node, so that OSG's Optimizer keeps transforms above it, and never an
-/// osg::Geometry, so that it does not flatten them into it.
+/// A Drawable rather than a plain Node, so that OSG's Optimizer keeps transforms above it, and
+/// never an osg::Geometry, so that it does not flatten them into it.
 class OSGVOLUMIZER_EXPORT VolumeGeometry : public osg::Drawable
 {
 public:
     META_Object(osgVolumizer, VolumeGeometry)
 
-    /// How a box is cut into tetrahedra.
-    enum BoxTessellation { FIVE, TWENTY_FOUR, ENCLOSING };
+        /// How a box is cut into tetrahedra.
+        enum BoxTessellation {
+            FIVE,
+            TWENTY_FOUR,
+            ENCLOSING
+        };
 
     VolumeGeometry();
     VolumeGeometry(const VolumeGeometry& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);

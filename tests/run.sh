@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12, root or sudo), builds, and runs all tests: optimised, then
-# under the address and undefined-behaviour sanitizers, then the fuzz targets for a few seconds each
+# under the address and undefined-behaviour sanitizers, then the test of threads under the thread
+# sanitizer, then the fuzz targets for a few seconds each
 # where clang is there. Fails if anything fails, or if a test was skipped.
 set -u -o pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
@@ -30,20 +31,21 @@ run_suite() {
     fi
 }
 
-# Fuzz targets are programs named *Fuzz; each starts from its folder of examples, if there is one.
+# Fuzz targets are programs named *Fuzz; each starts from its folder under tests/fuzz/seeds, if any.
 run_fuzz() {
     local target corpus seeds
     cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ \
         -DOSGVOLUMIZER_BUILD_FUZZ=ON -DOSGVOLUMIZER_SANITIZE=fuzzer-no-link,address,undefined || exit 1
     cmake --build build/fuzz -j "$jobs" --target fuzz || exit 1
     for target in build/fuzz/bin/*Fuzz; do
-        corpus=build/fuzz/corpus/$(basename "$target")
-        seeds=tests/fuzz/seeds/$(basename "$target")
+        name=$(basename "$target")
+        corpus=build/fuzz/corpus/$name
+        seeds=tests/fuzz/seeds/$name
         mkdir -p "$corpus"
-        echo "$(basename "$target") for $FUZZ_SECONDS s"
+        [ -d "$seeds" ] || seeds=
+        echo "$name for $FUZZ_SECONDS s"
         "$target" -max_total_time="$FUZZ_SECONDS" -timeout=30 -rss_limit_mb=2048 -verbosity=0 \
-            -artifact_prefix="$corpus/" "$corpus" $([ ! -d "$seeds" ] || echo "$seeds") ||
-            failures+=("$(basename "$target")")
+            -artifact_prefix="$corpus/" "$corpus" $seeds || failures+=("$name")
     done
 }
 
@@ -52,6 +54,7 @@ install_missing $BUILD_PACKAGES libgtest-dev libgl1-mesa-dri openscenegraph xvfb
 
 run_suite release
 run_suite asan-ubsan
+run_suite tsan # the test of threads only
 if echo 'extern "C" int LLVMFuzzerTestOneInput(const char*, unsigned long) { return 0; }' |
     clang++ -x c++ -fsanitize=fuzzer,address - -o /dev/null 2>/dev/null; then
     run_fuzz
@@ -61,7 +64,7 @@ fi
 
 # The closing lines of ctest once more, so that they are the last thing on the screen.
 echo
-for preset in asan-ubsan release; do
+for preset in tsan asan-ubsan release; do
     echo "$preset:"
     grep -E '^[0-9]+% tests passed' "build/logs/ctest-$preset.log"
 done

@@ -6,9 +6,10 @@
 #include <support/PictureFile.h>
 #include <support/SceneRenderer.h>
 
-#include <osgDB/ReadFile>
+#include <osgDB/Registry>
 #include <osgUtil/Optimizer>
 
+#include <cmath>
 #include <iostream>
 
 using namespace osgVolumizer;
@@ -62,18 +63,24 @@ support::RenderOptions viewOf(const Arguments& arguments, const osg::BoundingSph
 Status run(const Arguments& arguments)
 {
     osg::ref_ptr<osgDB::Options> readerOptions = new osgDB::Options(arguments.readerOptions);
-    osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(arguments.scene, readerOptions.get());
+    osgDB::ReaderWriter::ReadResult read =
+        osgDB::Registry::instance()->readNode(arguments.scene, readerOptions.get());
+    osg::ref_ptr<osg::Node> scene = read.getNode();
     if (!scene)
-        return Status(ErrorCode::FILE_UNREADABLE,
-                      "Cannot read a scene from '" + arguments.scene + "'.");
+        return Status(ErrorCode::FILE_UNREADABLE, "Cannot read a scene from '" + arguments.scene +
+                                                      "': " + read.statusMessage() + ".");
     Apply apply(arguments);
     scene->accept(apply);
     if (!apply.status.ok()) return apply.status;
     osgUtil::Optimizer().optimize(scene.get());
 
     const support::RenderOptions options = viewOf(arguments, scene->getBound());
-    if (!options.view.valid())
-        return Status(ErrorCode::VALUE_INVALID, "The eye, centre and up vector give no view.");
+    // Singular where the line of sight is along the up vector.
+    if (!(std::abs(options.view(0, 0)) + std::abs(options.view(1, 0)) +
+              std::abs(options.view(2, 0)) >
+          0.5))
+        return Status(ErrorCode::VALUE_INVALID,
+                      "The line of sight is parallel to the up vector, or one of them is zero.");
     support::SceneRenderer renderer(scene.get(), options);
     Statistics statistics;
     renderer.render();

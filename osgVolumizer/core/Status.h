@@ -7,7 +7,8 @@
 namespace osgVolumizer {
 
 /// Why something was refused. The numbers are stable: they appear in messages and in stats.
-enum class ErrorCode : int {
+enum class ErrorCode : int
+{
     NONE = 0,
     FILE_NOT_FOUND = 1,
     FILE_UNREADABLE = 2, ///< cut short, or not what its name says
@@ -22,8 +23,8 @@ enum class ErrorCode : int {
 /// "VALUE_INVALID" and so on, for messages.
 inline const char* errorName(ErrorCode code)
 {
-    static const char* const names[] = {"NONE",          "FILE_NOT_FOUND", "FILE_UNREADABLE",
-                                        "SIZE_MISMATCH", "VALUE_INVALID",  "INDEX_OUT_OF_RANGE",
+    static const char* const names[] = {"NONE",          "FILE_NOT_FOUND",  "FILE_UNREADABLE",
+                                        "SIZE_MISMATCH", "VALUE_INVALID",   "INDEX_OUT_OF_RANGE",
                                         "TOO_LARGE",     "SINGULAR_MATRIX", "NOT_SUPPORTED"};
     return names[static_cast<int>(code)];
 }

@@ -1,5 +1,7 @@
 #include "ImageFile.h"
 
+#include "TiffDepth.h"
+
 #include "../core/Text.h"
 #include "../core/voxels/VoxelData.h"
 #include "../core/voxels/VoxelDispatch.h"
@@ -8,6 +10,7 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <vector>
 
 namespace osgVolumizer {
@@ -127,6 +130,14 @@ Status ImageFile::open(const std::string& path)
         return {ErrorCode::FILE_UNREADABLE,
                 path + ", of " + std::to_string(fileBytes(path)) +
                     " bytes, cannot be opened as an image: " + oneLine(OIIO::geterror())};
+    if (std::string(_input->format_name()) == "tiff") {
+        std::ifstream file(path, std::ios::binary);
+        const std::uint64_t depth = tiffImageDepth(file);
+        if (depth != static_cast<std::uint64_t>(std::max(size().z, 1)))
+            return {ErrorCode::NOT_SUPPORTED,
+                    path + " has ImageDepth " + std::to_string(depth) +
+                        "; a 3D TIFF with a page for each slice can be read"};
+    }
     const glm::ivec3 s = size();
     if (s.x < 1 || s.y < 1 || s.z < 1 || spec().nchannels < 1)
         return {ErrorCode::FILE_UNREADABLE, path + " has " + text()};

@@ -1,6 +1,7 @@
 #include "Accumulation.h"
 
 #include "ScissorScope.h"
+#include "SharedStateSets.h"
 #include "VolumeProgram.h"
 
 #include <osg/Depth>
@@ -55,7 +56,8 @@ GLuint textureName(osg::State& state, osg::Texture2D& texture)
     return texture.getTextureObject(state.getContextID())->id();
 }
 
-// Bits of an attachment of the framebuffer that is drawn to; `window` names the same part of a window.
+// Bits of an attachment of the framebuffer that is drawn to; `window` names the same part of a
+// window.
 GLint attachmentBits(const ContextResources& resources, GLint framebuffer, GLenum attachment,
                      GLenum window, GLenum parameter)
 {
@@ -98,24 +100,25 @@ void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorF
     const GLuint depth = textureName(state, *buffers.depth);
     if (!buffers.framebuffer) gl.glGenFramebuffers(1, &buffers.framebuffer);
     gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.framebuffer);
-    gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D, color, 0);
+    gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D, color,
+                              0);
     gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth, 0);
 }
 
 // Clearing the layer buffer needs depth writes.
 osg::ref_ptr<osg::StateSet> accumulationStateSet()
 {
-    static const osg::ref_ptr<osg::StateSet> set = []() {
+    return sharedStateSet(SharedState::ACCUMULATION, []() {
         osg::ref_ptr<osg::StateSet> s = new osg::StateSet;
         s->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true),
                                 osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE |
                                     osg::StateAttribute::PROTECTED);
         return s;
-    }();
-    return set;
+    });
 }
 
-// Depth in float, so that what is written back from a texture is what was captured, to the last bit.
+// Depth in float, so that what is written back from a texture is what was captured, to the last
+// bit.
 osg::ref_ptr<osg::Texture2D> makeDepthStencil(int width, int height)
 {
     return makeTarget(width, height, GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL_EXT,
@@ -282,10 +285,18 @@ void AccumulationLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     if (!_accumulation) return;
     switch (_step) {
-    case BEGIN: _accumulation->begin(renderInfo); break;
-    case END: _accumulation->end(renderInfo); break;
-    case BEGIN_LAYER: _accumulation->beginLayer(renderInfo, _area); break;
-    case END_LAYER: _accumulation->endLayer(renderInfo); break;
+    case BEGIN:
+        _accumulation->begin(renderInfo);
+        break;
+    case END:
+        _accumulation->end(renderInfo);
+        break;
+    case BEGIN_LAYER:
+        _accumulation->beginLayer(renderInfo, _area);
+        break;
+    case END_LAYER:
+        _accumulation->endLayer(renderInfo);
+        break;
     }
 }
 

@@ -13,16 +13,18 @@ namespace render {
 /// What the leaves between begin and end draw into.
 struct AccumulationSettings
 {
-    /// Bits per colour channel, 8, 16 or 32, of the target; a framebuffer that has as many is used as it is.
+    /// Bits per colour channel, 8, 16 or 32, of the target; a framebuffer that has as many is used
+    /// as it is.
     int bits = 32;
     /// Window rectangle that may be drawn to: x, y, width, height.
     int x = 0, y = 0, width = 0, height = 0;
 };
 
 /// One pass over a transparent bin's leaves. begin() takes a copy of the opaque scene's depth for
-/// segments to end at, and, where the framebuffer has fewer bits than asked for, redirects drawing to a float
-/// target that starts as a copy of the framebuffer, so that any blend function still finds the colours it
-/// expects. end() writes the result back. Both run in the draw thread, in one context.
+/// segments to end at, and, where the framebuffer has fewer bits than asked for, redirects drawing
+/// to a float target that starts as a copy of the framebuffer, so that any blend function still
+/// finds the colours it expects. end() writes the result back. Both run in the draw thread, in one
+/// context.
 class Accumulation : public osg::Referenced
 {
 public:
@@ -55,10 +57,19 @@ private:
 class AccumulationLeaf : public osg::Drawable
 {
 public:
-    enum Step { BEGIN, END, BEGIN_LAYER, END_LAYER };
+    enum Step
+    {
+        BEGIN,
+        END,
+        BEGIN_LAYER,
+        END_LAYER
+    };
 
     AccumulationLeaf(Accumulation* accumulation, Step step, const glm::ivec4& area);
-    osg::Object* cloneType() const override { return new AccumulationLeaf(nullptr, BEGIN, glm::ivec4(0)); }
+    osg::Object* cloneType() const override
+    {
+        return new AccumulationLeaf(nullptr, BEGIN, glm::ivec4(0));
+    }
     osg::Object* clone(const osg::CopyOp&) const override { return cloneType(); }
     const char* libraryName() const override { return "osgVolumizer"; }
     const char* className() const override { return "AccumulationLeaf"; }

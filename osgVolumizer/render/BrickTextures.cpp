@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -58,11 +59,30 @@ double signedOffset(VoxelType type)
     return type == VoxelType::INT8 ? -128.0 : type == VoxelType::INT16 ? -32768.0 : 0.0;
 }
 
-bool hasHoles(const float* values, std::size_t count)
+// NaN and infinite values.
+bool isHole(float v)
 {
-    for (std::size_t i = 0; i < count; ++i)
-        if (!std::isfinite(values[i])) return true;
-    return false;
+    return !std::isfinite(v);
+}
+bool isHole(std::uint16_t half)
+{
+    return (half & 0x7c00u) == 0x7c00u;
+}
+
+template <class T>
+bool hasHoles(const unsigned char* data, std::size_t count)
+{
+    const auto* values = reinterpret_cast<const T*>(data);
+    return std::any_of(values, values + count, [](T v) { return isHole(v); });
+}
+
+// Holes show what the lowest value shows; a NaN would spread through the filter.
+template <class T>
+void fillHoles(unsigned char* data, std::size_t count, T lowest)
+{
+    auto* values = reinterpret_cast<T*>(data);
+    std::replace_if(
+        values, values + count, [](T v) { return isHole(v); }, lowest);
 }
 
 // The texels of a brick: the block itself where nothing has to change.
@@ -71,8 +91,9 @@ VoxelBlock texelsOf(const Voxels& voxels, const VoxelBlock& block, const TexelFo
     const VoxelType type = voxels.getType();
     const std::size_t count = block.bytes / voxelTypeSize(type);
     const bool same = type == format.type && !format.fraction;
-    const bool floats = format.type == VoxelType::FLOAT32;
-    if (same && !(floats && hasHoles(reinterpret_cast<const float*>(block.data), count)))
+    const bool floats = format.type == VoxelType::FLOAT32, halves = format.type == VoxelType::HALF;
+    if (same && !(floats && hasHoles<float>(block.data, count)) &&
+        !(halves && hasHoles<std::uint16_t>(block.data, count)))
         return block;
     const osg::Vec2d range = voxels.getRange();
     const double scale = format.fraction ? 1.0 / (range.y() - range.x()) : 1.0;
@@ -80,12 +101,12 @@ VoxelBlock texelsOf(const Voxels& voxels, const VoxelBlock& block, const TexelFo
     auto converted =
         std::make_shared<std::vector<unsigned char>>(count * voxelTypeSize(format.type));
     core::convertVoxels(block.data, type, converted->data(), format.type, count, scale, offset);
-    if (floats) {
-        // Holes show what the lowest value shows; a NaN would spread through the filter.
-        const float lowest = format.fraction ? 0.0f : static_cast<float>(range.x());
-        auto* values = reinterpret_cast<float*>(converted->data());
-        for (std::size_t i = 0; i < count; ++i)
-            if (!std::isfinite(values[i])) values[i] = lowest;
+    const float lowest = format.fraction ? 0.0f : static_cast<float>(range.x());
+    if (floats) fillHoles<float>(converted->data(), count, lowest);
+    if (halves) {
+        std::uint16_t lowestHalf = 0;
+        core::convertVoxels(&lowest, VoxelType::FLOAT32, &lowestHalf, VoxelType::HALF, 1);
+        fillHoles<std::uint16_t>(converted->data(), count, lowestHalf);
     }
     return {converted, converted->data(), converted->size()};
 }

@@ -1,5 +1,7 @@
 #include "ContextResources.h"
 
+#include "SharedStateSets.h"
+
 #include <map>
 #include <mutex>
 
@@ -74,6 +76,7 @@ std::shared_ptr<ContextResources> contextResources(osg::State& state)
 
 void releaseContextResources(osg::State* state)
 {
+    releaseSharedStateSets(state);
     std::lock_guard<std::mutex> lock(registryMutex());
     if (!state) {
         // No context is current: the names go with their contexts.

@@ -35,8 +35,9 @@ struct LayerBuffers
     const osg::Texture2D* rankColor = nullptr; ///< that the rank framebuffer has for colour
 };
 
-/// The colour and depth that volumes are accumulated in, a copy of the opaque scene's depth, and the depth of
-/// the surfaces that split segments. One a context, grown to the largest viewport seen.
+/// The colour and depth that volumes are accumulated in, a copy of the opaque scene's depth, and
+/// the depth of the surfaces that split segments. One a context, grown to the largest viewport
+/// seen.
 struct AccumulationBuffers
 {
     int width = 0, height = 0;

@@ -19,12 +19,13 @@ namespace {
 const VolumeAppearance* nearestAppearance(const osg::NodePath& path)
 {
     for (auto node = path.rbegin(); node != path.rend(); ++node)
-        if (const auto* appearance = dynamic_cast<const VolumeAppearance*>(*node)) return appearance;
+        if (const auto* appearance = dynamic_cast<const VolumeAppearance*>(*node))
+            return appearance;
     return nullptr;
 }
 
-// What osgUtil::CullVisitor does for every drawable before it looks at it: false if the user's callback
-// or the frustum rejects it.
+// What osgUtil::CullVisitor does for every drawable before it looks at it: false if the user's
+// callback or the frustum rejects it.
 bool passesOsgCulling(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
 {
     if (osg::Callback* callback = geometry.getCullCallback()) {

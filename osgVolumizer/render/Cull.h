@@ -9,9 +9,9 @@ class VolumeGeometry;
 
 namespace render {
 
-/// What VolumeGeometry does under a cull visitor: finds the nearest VolumeAppearance above, rejects by
-/// frustum, reports near and far, selects bricks, and registers the volume with the merger of the
-/// current transparent bin. Writes no member of any node; safe with several cull threads.
+/// What VolumeGeometry does under a cull visitor: finds the nearest VolumeAppearance above, rejects
+/// by frustum, reports near and far, selects bricks, and registers the volume with the merger of
+/// the current transparent bin. Writes no member of any node; safe with several cull threads.
 void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor);
 
 } // namespace render

@@ -1,6 +1,7 @@
 #include "DepthLayers.h"
 
 #include "ScissorScope.h"
+#include "SharedStateSets.h"
 #include "VolumeProgram.h"
 
 #include <osg/ColorMask>
@@ -19,7 +20,8 @@ std::string shaderSource(const std::string& name); // generated from shaders/*.g
 namespace {
 
 using osg::StateAttribute;
-constexpr unsigned FORCE = StateAttribute::ON | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
+constexpr unsigned FORCE =
+    StateAttribute::ON | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
 constexpr GLenum WAIT_FOR_QUERY = 0x8E13; // GL_QUERY_WAIT
 
 osg::ref_ptr<osg::Program> screenProgram(const char* fragment)
@@ -40,12 +42,13 @@ osg::ref_ptr<osg::StateSet> screenState(const char* fragment, bool writeDepth)
     set->setAttributeAndModes(screenProgram(fragment), FORCE);
     set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, writeDepth), FORCE);
     const unsigned off = StateAttribute::OFF | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
-    for (GLenum mode : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_ALPHA_TEST}) set->setMode(mode, off);
+    for (GLenum mode : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_ALPHA_TEST})
+        set->setMode(mode, off);
     const bool color = !writeDepth;
     set->setAttribute(new osg::ColorMask(color, color, color, color), FORCE);
     for (int k = 0; k < LayerLeaf::LAYER_COUNT; ++k)
-        set->addUniform(new osg::Uniform(("layer" + std::to_string(k)).c_str(),
-                                         int(UNIT_FIRST_LAYER) + k));
+        set->addUniform(
+            new osg::Uniform(("layer" + std::to_string(k)).c_str(), int(UNIT_FIRST_LAYER) + k));
     set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
     set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
     set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
@@ -100,15 +103,18 @@ osg::Object* LayerLeaf::cloneType() const
 
 osg::ref_ptr<osg::StateSet> LayerLeaf::stateSet(Step step)
 {
-    static const osg::ref_ptr<osg::StateSet> sort = screenState("sort.frag.glsl", false);
-    static const osg::ref_ptr<osg::StateSet> fill = screenState("fill.frag.glsl", true);
-    static const osg::ref_ptr<osg::StateSet> clear = []() {
+    if (step == SORT)
+        return sharedStateSet(SharedState::SORT,
+                              []() { return screenState("sort.frag.glsl", false); });
+    if (step == BEGIN_RANK || step == BEGIN_REST)
+        return sharedStateSet(SharedState::FILL,
+                              []() { return screenState("fill.frag.glsl", true); });
+    return sharedStateSet(SharedState::CLEAR, []() {
         osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
         set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE);
         set->setAttribute(new osg::Stencil, FORCE); // its write mask is all ones
         return set;
-    }();
-    return step == SORT ? sort : step == BEGIN_RANK || step == BEGIN_REST ? fill : clear;
+    });
 }
 
 void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
@@ -172,12 +178,9 @@ void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
         state.haveAppliedTextureAttribute(unit, StateAttribute::TEXTURE);
 }
 
-osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index,
-                                              const osg::Depth* effectiveDepth)
+osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index)
 {
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-    const double zNear = effectiveDepth ? effectiveDepth->getZNear() : 0.0;
-    const double zFar = effectiveDepth ? effectiveDepth->getZFar() : 1.0;
     const auto stencil = [&set](osg::Stencil::Function function, int reference) {
         osg::ref_ptr<osg::Stencil> s = new osg::Stencil;
         s->setFunction(function, reference, 0xff);
@@ -191,10 +194,12 @@ osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index,
         set->setAttribute(new osg::ColorMask(false, false, false, false), FORCE);
     } else if (step == LayerLeaf::BEGIN_REST) {
         function = osg::Depth::LESS;
-        stencil(osg::Stencil::LEQUAL, LayerLeaf::LAYER_COUNT); // passes where the count has come this far
+        stencil(osg::Stencil::LEQUAL,
+                LayerLeaf::LAYER_COUNT); // passes where the count has come this far
     }
-    set->setAttributeAndModes(
-        new osg::Depth(function, zNear, zFar, step == LayerLeaf::BEGIN_CAPTURE), FORCE);
+    // True depths, whatever range the leaf asks for: the volume is compared with them.
+    set->setAttributeAndModes(new osg::Depth(function, 0.0, 1.0, step == LayerLeaf::BEGIN_CAPTURE),
+                              FORCE);
     return set;
 }
 

@@ -15,19 +15,21 @@ namespace render {
 
 /// Sorts the fragments of any surfaces by depth, pixel by pixel, without touching their shaders.
 ///
-/// Capture, K times: only the k-th fragment of a pixel to be rasterised leaves its depth in layer k, by stencil
-/// (the stencil-routed A-buffer of Myers and Bavoil, "Stencil Routed A-Buffer", SIGGRAPH Sketches 2007, one
-/// layer a pass). A full-screen pass sorts the K depths. Then, for each rank from far to near, the volume's segment
-/// behind that depth is drawn, and the surfaces again, where their depth equals it: exact order with any
-/// blend function, and no clipping, so no seams. Passes that no pixel needs are skipped by the GPU
-/// (conditional rendering on the capture's occlusion query). Fragments beyond the K-th of a pixel
-/// are drawn last, in the order that they come.
+/// Capture, K times: only the k-th fragment of a pixel to be rasterised leaves its depth in layer
+/// k, by stencil (the stencil-routed A-buffer of Myers and Bavoil, "Stencil Routed A-Buffer",
+/// SIGGRAPH Sketches 2007, one layer a pass). A full-screen pass sorts the K depths. Then, for each
+/// rank from far to near, the volume's segment behind that depth is drawn, and the surfaces again,
+/// where their depth equals it: exact order with any blend function, and no clipping, so no seams.
+/// Passes that no pixel needs are skipped by the GPU (conditional rendering on the capture's
+/// occlusion query). Fragments beyond the K-th of a pixel are drawn last, in the order that they
+/// come.
 class LayerLeaf : public osg::Drawable
 {
 public:
     static constexpr int LAYER_COUNT = LayerBuffers::COUNT;
 
-    enum Step {
+    enum Step
+    {
         BEGIN_CAPTURE, ///< of layer `index`
         END_CAPTURE,
         SORT,
@@ -57,8 +59,7 @@ private:
 };
 
 /// How surfaces are drawn into the layers, per step that begins with them.
-osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index,
-                                              const osg::Depth* effectiveDepth);
+osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index);
 
 } // namespace render
 } // namespace osgVolumizer

@@ -26,7 +26,8 @@ bool sameRays(const osg::Matrixd& a, const osg::Matrixd& b)
     return true;
 }
 
-// The Depth attribute that OSG would apply for a graph: the last one on the way down that no override stops.
+// The Depth attribute that OSG would apply for a graph: the last one on the way down that no
+// override stops.
 const osg::Depth* effectiveDepth(const osgUtil::StateGraph* graph)
 {
     std::vector<const osg::StateSet*> path;
@@ -92,13 +93,11 @@ std::optional<ForeignLeaf> ForeignLeaf::examine(osgUtil::RenderLeaf& leaf,
     return result;
 }
 
-const osg::Depth* ForeignLeaf::depth() const { return effectiveDepth(_leaf->_parent); }
-
 osgUtil::RenderLeaf* ForeignLeaf::copy(osg::StateSet& state) const
 {
-    osg::ref_ptr<osgUtil::RenderLeaf> leaf =
-        new osgUtil::RenderLeaf(const_cast<osg::Drawable*>(_leaf->getDrawable()), _leaf->_projection,
-                                _leaf->_modelview, _leaf->_depth, _leaf->_traversalOrderNumber);
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
+        const_cast<osg::Drawable*>(_leaf->getDrawable()), _leaf->_projection, _leaf->_modelview,
+        _leaf->_depth, _leaf->_traversalOrderNumber);
     _leaf->_parent->find_or_insert(&state)->addLeaf(leaf);
     return leaf.get();
 }
@@ -117,7 +116,7 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
     for (int row = 0; row < 4; ++row)
         (*projection)(row, 2) = scale * p(row, 2) + offset * p(row, 3);
 
-    const osg::Depth* depth = this->depth();
+    const osg::Depth* depth = effectiveDepth(_leaf->_parent);
     // Segments are split at true depths, whatever range the leaf draws to.
     const bool ownRange = depth && !layer;
     const double rangeNear = ownRange ? depth->getZNear() : 0.0;
@@ -126,7 +125,8 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
         return rangeNear + (rangeFar - rangeNear) * 0.5 * (z + 1.0);
     };
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-    const unsigned force = StateAttribute::ON | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
+    const unsigned force =
+        StateAttribute::ON | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
     const osg::Depth::Function function = layer   ? osg::Depth::LESS
                                           : depth ? depth->getFunction()
                                                   : osg::Depth::LESS;
@@ -138,9 +138,9 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
     } else {
         set->setAttribute(own, force); // whether there is a depth test at all stays as it was
     }
-    osg::ref_ptr<osgUtil::RenderLeaf> copy =
-        new osgUtil::RenderLeaf(drawable ? drawable : const_cast<osg::Drawable*>(_leaf->getDrawable()),
-                                projection, _leaf->_modelview, _leaf->_depth, _leaf->_traversalOrderNumber);
+    osg::ref_ptr<osgUtil::RenderLeaf> copy = new osgUtil::RenderLeaf(
+        drawable ? drawable : const_cast<osg::Drawable*>(_leaf->getDrawable()), projection,
+        _leaf->_modelview, _leaf->_depth, _leaf->_traversalOrderNumber);
     _leaf->_parent->find_or_insert(set)->addLeaf(copy);
     return copy.get();
 }

@@ -25,7 +25,8 @@ struct ScreenRectangle
     }
 };
 
-/// Screen rectangle and depth range of the corners of a box; what reaches behind the eye fills the screen.
+/// Screen rectangle and depth range of the corners of a box; what reaches behind the eye fills the
+/// screen.
 struct BoxInView
 {
     ScreenRectangle screen;
@@ -34,8 +35,8 @@ struct BoxInView
 BoxInView boxInView(const osg::BoundingBoxd& box, const osg::Matrixd& modelView,
                     const osg::Matrixd& projection);
 
-/// A leaf that is not ours, in the same bin: never touched, but replaced by copies where it reaches into a
-/// volume.
+/// A leaf that is not ours, in the same bin: never touched, but replaced by copies where it reaches
+/// into a volume.
 class ForeignLeaf
 {
 public:
@@ -47,18 +48,16 @@ public:
     osgUtil::RenderLeaf& leaf() const { return *_leaf; }
     const BoxInView& view() const { return _view; }
 
-    /// A copy of the leaf that draws only what lies between two depths: the planes become those of its
-    /// projection, and the window depths of these planes its depth range. Window z is affine in 1/z, so every
-    /// fragment keeps its depth exactly, whatever the shader. An infinite end is left as it was.
-    /// \param layer into the layer buffer: nearest depth, no colour
-    /// \param drawable draws the part of the leaf's drawable that matters; null: all of it
+    /// A copy of the leaf that draws only what lies between two depths: the planes become those of
+    /// its projection, and the window depths of these planes its depth range. Window z is affine in
+    /// 1/z, so every fragment keeps its depth exactly, whatever the shader. An infinite end is left
+    /// as it was. \param layer into the layer buffer: nearest depth, no colour \param drawable
+    /// draws the part of the leaf's drawable that matters; null: all of it
     osgUtil::RenderLeaf* piece(const core::DepthInterval& interval, bool layer,
                                osg::Drawable* drawable = nullptr) const;
 
     /// A copy of the whole leaf with a state of the caller's on top.
     osgUtil::RenderLeaf* copy(osg::StateSet& state) const;
-    /// The Depth attribute in force for the leaf; null: OSG's default.
-    const osg::Depth* depth() const;
 
 private:
     explicit ForeignLeaf(osgUtil::RenderLeaf& leaf) : _leaf(&leaf) {}

@@ -4,6 +4,7 @@
 #include "Matrices.h"
 #include "ScreenAreas.h"
 
+#include <osgText/TextBase>
 #include <osgUtil/StateGraph>
 
 #include <algorithm>
@@ -21,7 +22,10 @@ constexpr std::size_t MAXIMUM_REGIONS = 8;
 constexpr std::size_t MAXIMUM_SORTED_TRIANGLES = 20000, UNKNOWN_TRIANGLES = 1000;
 constexpr double INFINITE_DEPTH = std::numeric_limits<double>::infinity();
 
-double middle(const core::DepthInterval& d) { return 0.5 * (d.nearDepth + d.farDepth); }
+double middle(const core::DepthInterval& d)
+{
+    return 0.5 * (d.nearDepth + d.farDepth);
+}
 
 // Any order that does not depend on the order of nodes.
 bool comesFirst(const VolumeInstance* a, const VolumeInstance* b)
@@ -107,7 +111,8 @@ void GroupComposer::makeLooks(PreparedVolume& volume, const Region& region)
         look->surfaceNormal = volume.sliced->surfaceNormal();
         look->features.spherical = volume.sliced->spherical();
     } else if (!alone()) {
-        look->step = _step; // the same samples in every region, and one for each volume in a thin slab
+        look->step =
+            _step; // the same samples in every region, and one for each volume in a thin slab
     }
     volume.looks[WHOLE] = look;
     for (const Part part : {BEHIND_LAYER, IN_FRONT_OF_LAYER}) {
@@ -123,21 +128,26 @@ std::vector<core::ScheduledInterval> GroupComposer::schedule(const Region& regio
     std::vector<core::ScheduleMember> members;
     core::ScheduleLimits limits;
     for (const PreparedVolume& volume : _volumes) {
-        members.push_back({volume.instance->depth, true, volume.looks[WHOLE]->step});
+        members.push_back({volume.instance->depth, true, _step});
         // A slice has no inside that a layer could split.
         if (volume.sliced) limits.surfaceSteps = 1.0;
     }
-    for (std::size_t s : region.surfaces)
+    for (std::size_t s : region.surfaces) {
         members.push_back({_surfaces[s].view.depth, false, 0.0});
+        // What leaves no depth cannot split a segment either.
+        if (!leavesDepth(_surfaces[s])) limits.surfaceSteps = 1.0;
+    }
     return core::depthSchedule(members, limits);
 }
 
-// The part of each surface in each interval. Members of the schedule are the volumes, then the region's surfaces.
+// The part of each surface in each interval. Members of the schedule are the volumes, then the
+// region's surfaces.
 void GroupComposer::splitSurfaces(const Region& region,
                                   const std::vector<core::ScheduledInterval>& intervals)
 {
     std::vector<core::DepthInterval> depths;
-    for (const core::ScheduledInterval& interval : intervals) depths.push_back(interval.depth);
+    for (const core::ScheduledInterval& interval : intervals)
+        depths.push_back(interval.depth);
     for (std::size_t i = 0; i < region.surfaces.size(); ++i) {
         Surface& surface = _surfaces[region.surfaces[i]];
         const int member = static_cast<int>(_volumes.size() + i);
@@ -161,25 +171,38 @@ void GroupComposer::compose(std::vector<OrderedLeaf>& leaves)
         composeRegion({}, leaves);
         return;
     }
-    for (const Region& region : findRegions()) composeRegion(region, leaves);
+    for (const Region& region : findRegions())
+        composeRegion(region, leaves);
 }
 
-// Sorting draws every surface twice per layer; worth it until triangles cost more than intervals do.
+// Other drawables may set the depth mask themselves, as particle systems do.
+bool GroupComposer::leavesDepth(const Surface& surface)
+{
+    const osg::Drawable* drawable = surface.leaf->leaf().getDrawable();
+    return (drawable->asGeometry() || dynamic_cast<const osgText::TextBase*>(drawable)) &&
+           !drawable->getDrawCallback();
+}
+
+// Sorting draws every surface twice per layer; worth it until triangles cost more than intervals
+// do.
 bool GroupComposer::isWorthSorting(const Region& region) const
 {
-    if (region.surfaces.empty() || _volumes.size() != 1 || _volumes.front().sliced) return false;
+    if (region.surfaces.empty()) return false;
+    for (const PreparedVolume& volume : _volumes)
+        if (volume.sliced) return false;
     std::size_t triangles = 0;
-    for (std::size_t s : region.surfaces)
+    for (std::size_t s : region.surfaces) {
+        if (!leavesDepth(_surfaces[s])) return false;
         triangles += _surfaces[s].mesh ? _surfaces[s].mesh->triangleCount() : UNKNOWN_TRIANGLES;
+    }
     return triangles <= MAXIMUM_SORTED_TRIANGLES;
 }
 
 void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>& leaves)
 {
     using Step = LayerLeaf::Step;
-    PreparedVolume& volume = _volumes.front();
-    const double depth = volume.instance->look->referenceDepth;
-    const std::shared_ptr<const VolumeMesh> mesh = meshOf(volume, {volume.instance->depth});
+    const double depth = _volumes.front().instance->look->referenceDepth;
+    const std::vector<core::ScheduledInterval> intervals = schedule({region.rectangles, {}});
     _accumulation.requireTarget();
     for (int k = 0; k < LayerLeaf::LAYER_COUNT; ++k) {
         addLayerStep(Step::BEGIN_CAPTURE, k, region, depth, leaves);
@@ -187,12 +210,19 @@ void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>
         addLayerStep(Step::END_CAPTURE, k, region, depth, leaves);
     }
     addLayerStep(Step::SORT, 0, region, depth, leaves);
+    std::vector<OrderedLeaf> segments;
     for (int rank = 0; rank <= LayerLeaf::LAYER_COUNT; ++rank) {
-        auto look = std::make_shared<VolumeLook>(*volume.looks[WHOLE]);
-        look->features.ranked = true;
-        look->rank = rank;
+        for (PreparedVolume& volume : _volumes) {
+            auto look = std::make_shared<VolumeLook>(*volume.looks[WHOLE]);
+            look->features.ranked = true;
+            look->rank = rank;
+            volume.looks[WHOLE] = look;
+        }
         addLayerStep(Step::BEGIN_SEGMENT, rank, region, depth, leaves);
-        addVolume(volume, mesh, look, depth, leaves);
+        segments.clear();
+        composeVolumes(intervals, segments);
+        for (const OrderedLeaf& segment : segments)
+            leaves.push_back({depth, segment.leaf});
         addLayerStep(Step::END_SEGMENT, rank, region, depth, leaves);
         const bool rest = rank == LayerLeaf::LAYER_COUNT;
         const int query = rest ? rank - 1 : rank;
@@ -203,12 +233,37 @@ void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>
     }
 }
 
-void GroupComposer::addLayerStep(LayerLeaf::Step step, int index, const Region& region, double depth,
-                                 std::vector<OrderedLeaf>& leaves)
+// Intervals without surfaces: slabs, alternating who goes first.
+void GroupComposer::composeVolumes(const std::vector<core::ScheduledInterval>& intervals,
+                                   std::vector<OrderedLeaf>& leaves)
+{
+    bool reversed = false;
+    for (const core::ScheduledInterval& interval : intervals) {
+        addPending(interval, reversed, leaves);
+        reversed = !reversed;
+    }
+    flush(leaves);
+}
+
+void GroupComposer::addPending(const core::ScheduledInterval& interval, bool reversed,
+                               std::vector<OrderedLeaf>& leaves)
+{
+    std::vector<int> order = interval.volumes;
+    if (reversed) std::reverse(order.begin(), order.end());
+    for (int v : order) {
+        if (_pendingVolume != v) flush(leaves);
+        _pendingVolume = v;
+        _volumes[static_cast<std::size_t>(v)].pending.push_back(interval.depth);
+    }
+}
+
+void GroupComposer::addLayerStep(LayerLeaf::Step step, int index, const Region& region,
+                                 double depth, std::vector<OrderedLeaf>& leaves)
 {
     const osgUtil::RenderLeaf& beside = *_volumes.front().instance->leaf;
-    osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
-        new LayerLeaf(&_accumulation, step, index, areaOf(region)), beside._projection, beside._modelview);
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf =
+        new osgUtil::RenderLeaf(new LayerLeaf(&_accumulation, step, index, areaOf(region)),
+                                beside._projection, beside._modelview);
     beside._parent->_parent->find_or_insert(LayerLeaf::stateSet(step))->addLeaf(leaf);
     leaves.push_back({depth, leaf.get()});
 }
@@ -218,14 +273,15 @@ void GroupComposer::addSurfaces(LayerLeaf::Step step, int index, const Region& r
 {
     for (std::size_t s : region.surfaces) {
         const ForeignLeaf& surface = *_surfaces[s].leaf;
-        leaves.push_back({depth, surface.copy(*layerSurfaceState(step, index, surface.depth()))});
+        leaves.push_back({depth, surface.copy(*layerSurfaceState(step, index))});
         ++_counts.surfacePieces;
     }
 }
 
 void GroupComposer::composeRegion(const Region& region, std::vector<OrderedLeaf>& leaves)
 {
-    for (PreparedVolume& volume : _volumes) makeLooks(volume, region);
+    for (PreparedVolume& volume : _volumes)
+        makeLooks(volume, region);
     if (isWorthSorting(region)) {
         composeSorted(region, leaves);
         return;
@@ -238,15 +294,9 @@ void GroupComposer::composeRegion(const Region& region, std::vector<OrderedLeaf>
         const core::ScheduledInterval& interval = intervals[i];
         std::vector<int> order = interval.volumes;
         if (reversed) std::reverse(order.begin(), order.end());
+        if (interval.surfaces.empty()) addPending(interval, reversed, leaves);
         reversed = !reversed;
-        if (interval.surfaces.empty()) {
-            for (int v : order) {
-                if (_pendingVolume != v) flush(leaves);
-                _pendingVolume = v;
-                _volumes[static_cast<std::size_t>(v)].pending.push_back(interval.depth);
-            }
-            continue;
-        }
+        if (interval.surfaces.empty()) continue;
         flush(leaves);
         composeMixed(region, intervals, i, order, leaves);
     }
@@ -280,7 +330,8 @@ void GroupComposer::composeMixed(const Region& region,
     addPieces(region, intervals, interval, false, leaves);
     for (std::size_t i = order.size(); i-- > 0;) {
         PreparedVolume& volume = _volumes[static_cast<std::size_t>(order[i])];
-        if (!volume.sliced) addVolume(volume, meshes[i], volume.looks[IN_FRONT_OF_LAYER], depth, leaves);
+        if (!volume.sliced)
+            addVolume(volume, meshes[i], volume.looks[IN_FRONT_OF_LAYER], depth, leaves);
     }
 }
 
@@ -315,9 +366,8 @@ void GroupComposer::addVolume(PreparedVolume& volume, std::shared_ptr<const Volu
     ++_counts.volumeLeaves;
     osg::ref_ptr<VolumeDrawable> drawable = new VolumeDrawable;
     drawable->set(std::move(mesh), look);
-    osg::ref_ptr<osgUtil::RenderLeaf> leaf =
-        new osgUtil::RenderLeaf(drawable, instance.leaf->_projection, instance.leaf->_modelview,
-                                static_cast<float>(depth));
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
+        drawable, instance.leaf->_projection, instance.leaf->_modelview, static_cast<float>(depth));
     osgUtil::StateGraph* graph = instance.leaf->_parent;
     if (look->features.key() != instance.look->features.key())
         graph = graph->_parent->find_or_insert(volumeStateSet(look->features));
@@ -357,8 +407,8 @@ glm::ivec4 GroupComposer::areaOf(const Region& region) const
 void GroupComposer::addStep(AccumulationLeaf::Step step, const Region& region, double depth,
                             std::vector<OrderedLeaf>& leaves)
 {
-    leaves.push_back({depth, accumulationLeaf(_accumulation, step,
-                                              *_volumes.front().instance->leaf, areaOf(region))});
+    leaves.push_back({depth, accumulationLeaf(_accumulation, step, *_volumes.front().instance->leaf,
+                                              areaOf(region))});
 }
 
 } // namespace render

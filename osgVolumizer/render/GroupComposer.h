@@ -28,7 +28,8 @@ struct FrameCounts
     double volumeLeaves = 0.0, surfacePieces = 0.0, intervals = 0.0;
 };
 
-/// Volumes and translucent leaves that overlap in depth and on the screen, directly or through each other.
+/// Volumes and translucent leaves that overlap in depth and on the screen, directly or through each
+/// other.
 struct MergeGroup
 {
     std::vector<VolumeInstance*> volumes;
@@ -37,17 +38,17 @@ struct MergeGroup
 
 /// Makes the leaves of one group, far to near.
 ///
-/// A volume by itself is one leaf. Where a few surfaces are in one volume, their fragments are sorted: see
-/// LayerLeaf; that is exact. Where there are many triangles or several volumes, depth is cut into
-/// intervals. An interval of a volume and surfaces is drawn as: the surfaces' nearest
-/// depth into a layer buffer, the volume behind that depth, the surfaces, the volume in front of it; this is exact
-/// where a pixel has one surface in the interval, and off by the interval's thickness where it has
-/// more. Several volumes are drawn in slabs one step thick, alternating who goes first: the error of drawing one
-/// slab of A behind one of B, ½ tauA tauB h² (cA - cB), has the other sign in the next slab, so it
-/// cancels, and what remains is second order in h and independent of who is A.
+/// A volume by itself is one leaf. Where a few surfaces are in volumes, their fragments are sorted:
+/// see LayerLeaf; that is exact. Where there are many triangles, depth is cut into intervals. An
+/// interval of a volume and surfaces is drawn as: the surfaces' nearest depth into a layer buffer,
+/// the volume behind that depth, the surfaces, the volume in front of it; this is exact where a
+/// pixel has one surface in the interval, and off by the interval's thickness where it has more.
+/// Several volumes are drawn in slabs one step thick, alternating who goes first: the error of
+/// drawing one slab of A behind one of B, ½ tauA tauB h² (cA - cB), has the other sign in the next
+/// slab, so it cancels, and what remains is second order in h and independent of who is A.
 ///
-/// Only pixels that surfaces can touch pay for them: the viewport is cut into rectangles around surfaces that
-/// overlap each other on the screen, each with intervals of its own, and the rest.
+/// Only pixels that surfaces can touch pay for them: the viewport is cut into rectangles around
+/// surfaces that overlap each other on the screen, each with intervals of its own, and the rest.
 class GroupComposer
 {
 public:
@@ -60,7 +61,12 @@ public:
     void compose(std::vector<OrderedLeaf>& leaves);
 
 private:
-    enum Part { WHOLE, BEHIND_LAYER, IN_FRONT_OF_LAYER };
+    enum Part
+    {
+        WHOLE,
+        BEHIND_LAYER,
+        IN_FRONT_OF_LAYER
+    };
     struct PreparedVolume
     {
         VolumeInstance* instance = nullptr;
@@ -89,8 +95,13 @@ private:
     void prepareVolumes();
     void prepareSurfaces(std::vector<OrderedLeaf>& leaves);
     std::vector<Region> findRegions() const;
+    static bool leavesDepth(const Surface& surface);
     bool isWorthSorting(const Region& region) const;
     void composeSorted(const Region& region, std::vector<OrderedLeaf>& leaves);
+    void composeVolumes(const std::vector<core::ScheduledInterval>& intervals,
+                        std::vector<OrderedLeaf>& leaves);
+    void addPending(const core::ScheduledInterval& interval, bool reversed,
+                    std::vector<OrderedLeaf>& leaves);
     void addLayerStep(LayerLeaf::Step step, int index, const Region& region, double depth,
                       std::vector<OrderedLeaf>& leaves);
     void addSurfaces(LayerLeaf::Step step, int index, const Region& region, double depth,
@@ -110,8 +121,8 @@ private:
                    std::size_t interval, bool layer, std::vector<OrderedLeaf>& leaves);
     void addStep(AccumulationLeaf::Step step, const Region& region, double depth,
                  std::vector<OrderedLeaf>& leaves);
-    std::shared_ptr<const VolumeMesh> meshOf(const PreparedVolume& volume,
-                                             const std::vector<core::DepthInterval>& intervals) const;
+    std::shared_ptr<const VolumeMesh>
+    meshOf(const PreparedVolume& volume, const std::vector<core::DepthInterval>& intervals) const;
     glm::ivec4 areaOf(const Region& region) const;
     bool alone() const { return _volumes.size() == 1 && _surfaces.empty(); }
 

@@ -130,7 +130,7 @@ glm::dvec3 pixelMargin(const glm::dmat4& toEye, const core::Box3d& bounds,
 
 // How the shader gets a colour out of a brick.
 void setInterpolation(const VolumeAppearance& appearance, const TableTexture& table,
-                      ProgramFeatures& features)
+                      double voxelsPerSample, ProgramFeatures& features)
 {
     const auto interpolation = usedInterpolation(appearance);
     features.nearest = interpolation == VolumeAppearance::NEAREST;
@@ -141,13 +141,12 @@ void setInterpolation(const VolumeAppearance& appearance, const TableTexture& ta
                       appearance.getLookup() == VolumeAppearance::BEFORE_INTERPOLATION;
     features.preIntegrated = table.integrals;
     // At a period of a voxel and more what the nearest entry is off by does not count.
-    const glm::dvec3 period = appearance.getSamplingParameters().periodVoxel;
-    features.smoothTable = !table.integrals && (appearance.getExactFiltering() ||
-                                                std::min({period.x, period.y, period.z}) < 1.0);
+    features.smoothTable =
+        !table.integrals && (appearance.getExactFiltering() || voxelsPerSample < 0.999);
 }
 
 void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
-                 const TableTexture& table, ProgramFeatures& features)
+                 ProgramFeatures& features)
 {
     const Voxels* voxels = appearance.getVoxels();
     features.slab = usesSlabs(appearance, prepared);
@@ -160,7 +159,6 @@ void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& pre
     features.shading = usesShading(appearance, prepared, features.rayFunction);
     features.gradientTexture = features.shading && !features.rgba &&
                                appearance.getGradients() == VolumeAppearance::PRECOMPUTED;
-    if (voxels) setInterpolation(appearance, table, features);
 }
 
 void setValues(const VolumeAppearance& appearance, const Voxels& voxels, VolumeLook& look)
@@ -197,7 +195,7 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     auto look = std::make_shared<VolumeLook>();
     ProgramFeatures& features = look->features;
     look->table = table;
-    setFeatures(appearance, prepared, table, features);
+    setFeatures(appearance, prepared, features);
     features.spherical = !features.slab && volume.sampling.mode == SamplingMode::SPHERICAL;
     if (appearance.getVoxels()) setValues(appearance, *appearance.getVoxels(), *look);
     look->frameToUnits = glm::dmat3(prepared.frameToObject) / appearance.getEffectiveOpacityUnit();
@@ -206,6 +204,10 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;
     look->step = sampleDepth(toEye, prepared.regionBox, volume.sampling);
     look->maximumSteps = volume.sampling.maximumSamples + 2;
+    const glm::dvec3 alongView = glm::inverse(glm::dmat3(toEye)) * glm::dvec3(0.0, 0.0, -1.0);
+    if (features.voxels)
+        setInterpolation(appearance, table,
+                         look->step * glm::length(alongView / volume.sampling.voxelSize), features);
     if (features.slab) {
         look->regionMin = glm::vec3(prepared.regionBox.min);
         look->regionMax = glm::vec3(prepared.regionBox.max);

@@ -20,7 +20,8 @@ public:
     }
     std::size_t root(std::size_t i)
     {
-        while (_parent[i] != i) i = _parent[i] = _parent[_parent[i]];
+        while (_parent[i] != i)
+            i = _parent[i] = _parent[_parent[i]];
         return i;
     }
     void join(std::size_t a, std::size_t b) { _parent[root(a)] = root(b); }
@@ -89,7 +90,8 @@ MergeGroups findMergeGroups(const std::vector<VolumeInstance*>& volumes,
         }
         return result.groups[group];
     };
-    for (std::size_t v = 0; v < n; ++v) groupOf(v).volumes.push_back(volumes[v]);
+    for (std::size_t v = 0; v < n; ++v)
+        groupOf(v).volumes.push_back(volumes[v]);
     std::size_t s = 0;
     for (const ForeignLeaf& surface : result.surfaces)
         groupOf(anyVolumeOf[s++]).surfaces.push_back(&surface);

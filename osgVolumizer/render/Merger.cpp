@@ -42,7 +42,8 @@ bool findDepthRange(VolumeInstance& volume, const core::View& view)
     }
     if (volume.bricks.empty()) {
         for (int i = 0; i < 8; ++i) {
-            const double depth = -(view.toEye * glm::dvec4(volume.prepared->bounds.corner(i), 1.0)).z;
+            const double depth =
+                -(view.toEye * glm::dvec4(volume.prepared->bounds.corner(i), 1.0)).z;
             nearest = std::min(nearest, depth);
             farthest = std::max(farthest, depth);
         }
@@ -65,19 +66,23 @@ void sortBricks(VolumeInstance& volume, const core::View& view)
     }
     core::BrickOrder(volume.appearance->getVoxels()->getLayout()).sort(*eye, order);
     volume.bricks.clear();
-    for (std::int64_t index : order) volume.bricks.push_back(std::move(byIndex.at(index)));
+    for (std::int64_t index : order)
+        volume.bricks.push_back(std::move(byIndex.at(index)));
 }
 
 // The first and the last of our leaves, around all others.
 void addAccumulation(Accumulation& accumulation, const osgUtil::RenderLeaf& beside,
                      const glm::ivec4& viewport, std::vector<OrderedLeaf>& made)
 {
-    const auto byDepth = [](const OrderedLeaf& a, const OrderedLeaf& b) { return a.depth < b.depth; };
+    const auto byDepth = [](const OrderedLeaf& a, const OrderedLeaf& b) {
+        return a.depth < b.depth;
+    };
     const auto ends = std::minmax_element(made.begin(), made.end(), byDepth);
     const double nearest = ends.first->depth, farthest = ends.second->depth;
-    made.insert(made.begin(),
-                {farthest, accumulationLeaf(accumulation, AccumulationLeaf::BEGIN, beside, viewport)});
-    made.push_back({nearest, accumulationLeaf(accumulation, AccumulationLeaf::END, beside, viewport)});
+    made.insert(made.begin(), {farthest, accumulationLeaf(accumulation, AccumulationLeaf::BEGIN,
+                                                          beside, viewport)});
+    made.push_back(
+        {nearest, accumulationLeaf(accumulation, AccumulationLeaf::END, beside, viewport)});
 }
 
 // Tells lit volumes of the stage's lights.
@@ -127,9 +132,11 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
     for (VolumeInstance* volume : layers) groups.groups.push_back({{volume}, {}});
 
     std::unordered_set<const osgUtil::RenderLeaf*> replaced;
-    for (const auto& volume : _volumes) replaced.insert(volume->leaf);
+    for (const auto& volume : _volumes)
+        replaced.insert(volume->leaf);
     for (const MergeGroup& group : groups.groups)
-        for (const ForeignLeaf* surface : group.surfaces) replaced.insert(&surface->leaf());
+        for (const ForeignLeaf* surface : group.surfaces)
+            replaced.insert(&surface->leaf());
 
     FrameCounts counts;
     const glm::ivec4 viewport(_viewport->x(), _viewport->y(), _viewport->width(),
@@ -146,18 +153,19 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
     for (osgUtil::RenderLeaf* leaf : leaves)
         if (!replaced.count(leaf)) all.push_back({leaf->_depth, leaf});
     all.insert(all.end(), made.begin(), made.end());
-    std::stable_sort(all.begin(), all.end(), [](const OrderedLeaf& a, const OrderedLeaf& b) {
-        return a.depth > b.depth;
-    });
+    std::stable_sort(all.begin(), all.end(),
+                     [](const OrderedLeaf& a, const OrderedLeaf& b) { return a.depth > b.depth; });
     leaves.clear();
-    for (const OrderedLeaf& leaf : all) leaves.push_back(leaf.leaf);
+    for (const OrderedLeaf& leaf : all)
+        leaves.push_back(leaf.leaf);
     report(counts);
 }
 
 std::vector<VolumeInstance*> Merger::visibleVolumes(const LeafList& leaves) const
 {
     std::unordered_map<const osg::Drawable*, osgUtil::RenderLeaf*> byDrawable;
-    for (osgUtil::RenderLeaf* leaf : leaves) byDrawable.emplace(leaf->getDrawable(), leaf);
+    for (osgUtil::RenderLeaf* leaf : leaves)
+        byDrawable.emplace(leaf->getDrawable(), leaf);
     std::vector<VolumeInstance*> result;
     for (const auto& volume : _volumes) {
         const auto found = byDrawable.find(volume->drawable.get());
@@ -194,7 +202,8 @@ void Merger::report(const FrameCounts& counts) const
         {"osgVolumizer volume leaves", counts.volumeLeaves},
         {"osgVolumizer surface pieces", counts.surfacePieces},
         {"osgVolumizer intervals", counts.intervals}};
-    for (const auto& value : values) count(_camera, _frameStamp, value.first, value.second);
+    for (const auto& value : values)
+        count(_camera, _frameStamp, value.first, value.second);
 }
 
 } // namespace render

@@ -16,9 +16,9 @@ class CullVisitor;
 namespace osgVolumizer {
 namespace render {
 
-/// Collects the volumes of one transparent bin in one view, and, once every leaf and the final near and far
-/// are known, replaces their leaves by drawn ones in depth order with everything else in the bin. One
-/// per bin and cull; a sort callback that was there before still runs first.
+/// Collects the volumes of one transparent bin in one view, and, once every leaf and the final near
+/// and far are known, replaces their leaves by drawn ones in depth order with everything else in
+/// the bin. One per bin and cull; a sort callback that was there before still runs first.
 class Merger : public osgUtil::RenderBin::SortCallback
 {
 public:

@@ -8,10 +8,10 @@
 namespace osgVolumizer {
 namespace render {
 
-/// The faces that a volume's segments are drawn from: for each interval (far to near) and brick (far to near)
-/// the faces that look at the eye of (geometry ∩ clip box ∩ interval ∩ beyond the near plane). A
-/// convex body covers each pixel with exactly one of them, and behind opaque geometry the depth test
-/// drops it before it is shaded.
+/// The faces that a volume's segments are drawn from: for each interval (far to near) and brick
+/// (far to near) the faces that look at the eye of (geometry ∩ clip box ∩ interval ∩ beyond the
+/// near plane). A convex body covers each pixel with exactly one of them, and behind opaque
+/// geometry the depth test drops it before it is shaded.
 std::shared_ptr<const VolumeMesh> slabMesh(const VolumeInstance& volume, const core::View& view,
                                            const std::vector<core::DepthInterval>& farToNear);
 
@@ -19,15 +19,15 @@ std::shared_ptr<const VolumeMesh> slabMesh(const VolumeInstance& volume, const c
 class SlicedVolume
 {
 public:
-    /// \param viewAligned takes planes perpendicular to the view whatever the appearance asks for: the only
-    /// family that other things can be merged with
+    /// \param viewAligned takes planes perpendicular to the view whatever the appearance asks for:
+    /// the only family that other things can be merged with
     Status polygonize(const VolumeInstance& volume, const core::View& view, bool viewAligned);
     /// Distance between surfaces, and the frame direction along which it is counted.
     double spacing() const { return _slices.spacing; }
     glm::dvec3 surfaceNormal() const { return _surfaceNormal; }
     bool spherical() const { return _spherical; }
-    /// The faces of the surfaces in an interval, brick by brick, far to near. The interval is half-open at
-    /// its near end.
+    /// The faces of the surfaces in an interval, brick by brick, far to near. The interval is
+    /// half-open at its near end.
     std::shared_ptr<const VolumeMesh> mesh(const VolumeInstance& volume,
                                            const core::DepthInterval& interval) const;
     /// The faces of all surfaces.

@@ -19,9 +19,10 @@ class Voxels;
 namespace render {
 
 /// A tetra set in the frame that is sent to GL. Where voxel coordinates are one affine function of
-/// position (always, without explicit ones) that frame is the voxel frame; else it is the object frame
-/// moved to the centre of the bounds, and voxel coordinates stay a field of the vertices. Either way the
-/// numbers are small, so floats keep the precision that doubles in the object frame had.
+/// position (always, without explicit ones) that frame is the voxel frame; else it is the object
+/// frame moved to the centre of the bounds, and voxel coordinates stay a field of the vertices.
+/// Either way the numbers are small, so floats keep the precision that doubles in the object frame
+/// had.
 struct PreparedGeometry
 {
     core::TetraSet tetras;
@@ -39,7 +40,8 @@ struct PreparedGeometry
 class GeometryCache
 {
 public:
-    std::shared_ptr<const PreparedGeometry> get(const VolumeGeometry& geometry, const Voxels* voxels);
+    std::shared_ptr<const PreparedGeometry> get(const VolumeGeometry& geometry,
+                                                const Voxels* voxels);
 
 private:
     struct Entry

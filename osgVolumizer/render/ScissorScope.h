@@ -9,8 +9,8 @@
 namespace osgVolumizer {
 namespace render {
 
-/// Narrows the scissor rectangle for a while, and puts back what it found, so that OSG's idea of the state
-/// stays true.
+/// Narrows the scissor rectangle for a while, and puts back what it found, so that OSG's idea of
+/// the state stays true.
 class ScissorScope
 {
 public:
@@ -27,7 +27,8 @@ public:
         if (!_enabled) glDisable(GL_SCISSOR_TEST);
     }
 
-    /// To the part of a rectangle (x, y, width, height) that could be drawn to before; false if none.
+    /// To the part of a rectangle (x, y, width, height) that could be drawn to before; false if
+    /// none.
     bool set(const glm::ivec4& r) const
     {
         glm::ivec4 box = r;

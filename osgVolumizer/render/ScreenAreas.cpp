@@ -8,9 +8,15 @@ namespace render {
 
 namespace {
 
-bool empty(const glm::ivec4& r) { return r[2] <= 0 || r[3] <= 0; }
+bool empty(const glm::ivec4& r)
+{
+    return r[2] <= 0 || r[3] <= 0;
+}
 
-glm::ivec4 fromEnds(int x0, int y0, int x1, int y1) { return {x0, y0, x1 - x0, y1 - y0}; }
+glm::ivec4 fromEnds(int x0, int y0, int x1, int y1)
+{
+    return {x0, y0, x1 - x0, y1 - y0};
+}
 
 bool overlap(const glm::ivec4& a, const glm::ivec4& b)
 {
@@ -20,9 +26,8 @@ bool overlap(const glm::ivec4& a, const glm::ivec4& b)
 void join(ScreenArea& a, const ScreenArea& b)
 {
     const glm::ivec4 &r = a.rectangle, &s = b.rectangle;
-    a.rectangle =
-        fromEnds(std::min(r[0], s[0]), std::min(r[1], s[1]), std::max(r[0] + r[2], s[0] + s[2]),
-                 std::max(r[1] + r[3], s[1] + s[3]));
+    a.rectangle = fromEnds(std::min(r[0], s[0]), std::min(r[1], s[1]),
+                           std::max(r[0] + r[2], s[0] + s[2]), std::max(r[1] + r[3], s[1] + s[3]));
     a.members.insert(a.members.end(), b.members.begin(), b.members.end());
 }
 
@@ -67,7 +72,8 @@ std::vector<ScreenArea> joinOverlapping(std::vector<ScreenArea> areas, std::size
     while (joinOnePair(areas)) {
     }
     if (areas.size() > maximum) {
-        for (std::size_t i = 1; i < areas.size(); ++i) join(areas.front(), areas[i]);
+        for (std::size_t i = 1; i < areas.size(); ++i)
+            join(areas.front(), areas[i]);
         areas.resize(1);
     }
     return areas;
@@ -84,9 +90,8 @@ std::vector<glm::ivec4> subtract(const std::vector<glm::ivec4>& rectangles, cons
         const int x0 = r[0], y0 = r[1], x1 = r[0] + r[2], y1 = r[1] + r[3];
         const int hx0 = std::max(x0, hole[0]), hx1 = std::min(x1, hole[0] + hole[2]);
         const int hy0 = std::max(y0, hole[1]), hy1 = std::min(y1, hole[1] + hole[3]);
-        for (const glm::ivec4& part :
-             {fromEnds(x0, y0, x1, hy0), fromEnds(x0, hy1, x1, y1), fromEnds(x0, hy0, hx0, hy1),
-              fromEnds(hx1, hy0, x1, hy1)})
+        for (const glm::ivec4& part : {fromEnds(x0, y0, x1, hy0), fromEnds(x0, hy1, x1, y1),
+                                       fromEnds(x0, hy0, hx0, hy1), fromEnds(hx1, hy0, x1, hy1)})
             if (!empty(part)) result.push_back(part);
     }
     return result;

@@ -17,8 +17,8 @@ struct ScreenArea
     std::vector<std::size_t> members;
 };
 
-/// The pixels of a rectangle of device coordinates and `margin` around it, inside the viewport; empty (width or
-/// height 0) where it lies outside.
+/// The pixels of a rectangle of device coordinates and `margin` around it, inside the viewport;
+/// empty (width or height 0) where it lies outside.
 glm::ivec4 pixelRectangle(const ScreenRectangle& rectangle, const glm::ivec4& viewport, int margin);
 
 /// Joins areas that overlap, until none do and there are no more than `maximum`; empty ones go.

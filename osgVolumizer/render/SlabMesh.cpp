@@ -23,7 +23,10 @@ core::Plane depthPlane(const glm::dmat4& toEye, double offset)
     return {-glm::dvec3(z), -z.w - offset};
 }
 
-core::Plane flipped(const core::Plane& p) { return {-p.normal, -p.offset}; }
+core::Plane flipped(const core::Plane& p)
+{
+    return {-p.normal, -p.offset};
+}
 
 // Tag of the faces that clipping makes; nobody asks which plane made them.
 constexpr int CUT = 6;
@@ -42,7 +45,8 @@ public:
 
     void append(const core::DepthInterval& interval)
     {
-        for (const SelectedBrick& brick : _volume.bricks) appendBrick(brick, interval);
+        for (const SelectedBrick& brick : _volume.bricks)
+            appendBrick(brick, interval);
     }
     std::shared_ptr<const VolumeMesh> take() { return std::move(_mesh); }
 
@@ -51,7 +55,7 @@ private:
     core::DepthInterval depthsOf(const core::Box3d& box) const
     {
         core::DepthInterval r{std::numeric_limits<double>::infinity(),
-                        -std::numeric_limits<double>::infinity()};
+                              -std::numeric_limits<double>::infinity()};
         for (int i = 0; i < 8; ++i) {
             const double d = depthPlane(_view.toEye, 0.0).distance(box.corner(i));
             r.nearDepth = std::min(r.nearDepth, d);
@@ -104,7 +108,8 @@ private:
         for (std::size_t f = 0; f < _polytope.faceCount(); ++f) {
             if (!facesEye(f)) continue;
             const auto first = static_cast<unsigned>(_mesh->vertices.size() / SLAB_STRIDE);
-            const std::uint32_t begin = _polytope.faceOffsets[f], end = _polytope.faceOffsets[f + 1];
+            const std::uint32_t begin = _polytope.faceOffsets[f],
+                                end = _polytope.faceOffsets[f + 1];
             for (std::uint32_t i = begin; i < end; ++i) {
                 const glm::vec3 p(_polytope.vertices[_polytope.indices[i]]);
                 _mesh->vertices.insert(_mesh->vertices.end(),
@@ -134,7 +139,8 @@ std::shared_ptr<const VolumeMesh> slabMesh(const VolumeInstance& volume, const c
     const Result<glm::dvec4> eye = core::eyePosition(view);
     if (!eye) return std::make_shared<VolumeMesh>();
     SlabMeshBuilder builder(volume, view, *eye);
-    for (const core::DepthInterval& interval : farToNear) builder.append(interval);
+    for (const core::DepthInterval& interval : farToNear)
+        builder.append(interval);
     return builder.take();
 }
 

@@ -9,8 +9,8 @@ namespace render {
 
 namespace {
 
-// Triangles of one face as a fan. PRIMITIVE faces each have a thickness of their own, so their vertices are
-// written out again with it.
+// Triangles of one face as a fan. PRIMITIVE faces each have a thickness of their own, so their
+// vertices are written out again with it.
 void appendFace(const core::PolygonizedFaces& slices, std::uint32_t face, VolumeMesh& mesh)
 {
     const core::FaceSet& faces = slices.faces;
@@ -60,7 +60,8 @@ void appendRange(const VolumeInstance& volume, const core::PolygonizedFaces& sli
 std::vector<core::Box3d> clipBoxesOf(const VolumeInstance& volume)
 {
     std::vector<core::Box3d> boxes;
-    for (const SelectedBrick& brick : volume.bricks) boxes.push_back(brick.box);
+    for (const SelectedBrick& brick : volume.bricks)
+        boxes.push_back(brick.box);
     return boxes;
 }
 
@@ -75,8 +76,8 @@ Status SlicedVolume::polygonize(const VolumeInstance& volume, const core::View& 
                         !volume.prepared->voxelFrame && volume.look->features.voxels;
     if (viewAligned || noAxis) sampling.mode = SamplingMode::VIEWPORT_ALIGNED;
     _spherical = sampling.mode == SamplingMode::SPHERICAL;
-    const Status status = core::polygonize(volume.prepared->tetras, clipBoxesOf(volume), view,
-                                           sampling, _slices);
+    const Status status =
+        core::polygonize(volume.prepared->tetras, clipBoxesOf(volume), view, sampling, _slices);
     if (!status) return status;
     _surfaceNormal = glm::dvec3(0.0);
     if (_slices.axis >= 0)
@@ -116,8 +117,8 @@ std::shared_ptr<const VolumeMesh> SlicedVolume::makeMesh(const VolumeInstance& v
     if (format.colorSize) mesh->colorOffset = format.colorOffset();
     mesh->colorSize = format.colorSize;
     if (ownSpacing) mesh->spacingOffset = format.stride();
-    // Bricks of one affine map have an order of their own, so that each is bound once; of a deformed
-    // volume only the surfaces have.
+    // Bricks of one affine map have an order of their own, so that each is bound once; of a
+    // deformed volume only the surfaces have.
     const int surfaces = lastSurface - firstSurface;
     const bool brickByBrick = volume.prepared->voxelFrame || _slices.brickCount == 1;
     const int outer = brickByBrick ? _slices.brickCount : surfaces;
@@ -129,7 +130,8 @@ std::shared_ptr<const VolumeMesh> SlicedVolume::makeMesh(const VolumeInstance& v
             appendRange(volume, _slices, surface, brick, j == 0 || !brickByBrick, *mesh);
         }
     }
-    while (!mesh->batches.empty() && mesh->batches.back().indexCount == 0) mesh->batches.pop_back();
+    while (!mesh->batches.empty() && mesh->batches.back().indexCount == 0)
+        mesh->batches.pop_back();
     if (!ownSpacing) mesh->vertices = _slices.faces.vertices;
     return mesh;
 }

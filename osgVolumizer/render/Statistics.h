@@ -7,8 +7,9 @@
 namespace osgVolumizer {
 namespace render {
 
-/// Adds to a counter of the frame in the statistics of the camera and, where it has none of its own (a nested
-/// render-to-texture camera), of the view's. They collect it when asked for "osgVolumizer".
+/// Adds to a counter of the frame in the statistics of the camera and, where it has none of its own
+/// (a nested render-to-texture camera), of the view's. They collect it when asked for
+/// "osgVolumizer".
 inline void count(const osg::Camera* camera, const osg::FrameStamp* frame, const char* name,
                   double amount)
 {

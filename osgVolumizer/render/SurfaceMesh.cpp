@@ -39,8 +39,10 @@ bool isTriangles(GLenum mode)
     case GL_TRIANGLE_FAN:
     case GL_QUADS:
     case GL_QUAD_STRIP:
-    case GL_POLYGON: return true;
-    default: return false;
+    case GL_POLYGON:
+        return true;
+    default:
+        return false;
     }
 }
 
@@ -158,7 +160,8 @@ std::unique_ptr<SurfaceMesh> SurfaceMesh::of(const ForeignLeaf& foreign)
 
     mesh->_triangles.reserve(indices.size() / 3);
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-        if (std::max({indices[i], indices[i + 1], indices[i + 2]}) >= vertices.size()) return nullptr;
+        if (std::max({indices[i], indices[i + 1], indices[i + 2]}) >= vertices.size())
+            return nullptr;
         const float a = depths[indices[i]], b = depths[indices[i + 1]], c = depths[indices[i + 2]];
         const float s = static_cast<float>(slack);
         mesh->_triangles.push_back({{indices[i], indices[i + 1], indices[i + 2]},

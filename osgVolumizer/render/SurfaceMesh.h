@@ -12,13 +12,14 @@
 namespace osgVolumizer {
 namespace render {
 
-/// The triangles of a foreign leaf that is a plain osg::Geometry, with their depths in one view, so that each
-/// interval draws only those that reach into it, far to near.
+/// The triangles of a foreign leaf that is a plain osg::Geometry, with their depths in one view, so
+/// that each interval draws only those that reach into it, far to near.
 class SurfaceMesh
 {
 public:
-    /// Nothing where the triangles cannot be known or drawn by index: other drawables, vertex shaders that may
-    /// move them, lines and points, instances, arrays bound per primitive set, draw callbacks.
+    /// Nothing where the triangles cannot be known or drawn by index: other drawables, vertex
+    /// shaders that may move them, lines and points, instances, arrays bound per primitive set,
+    /// draw callbacks.
     static std::unique_ptr<SurfaceMesh> of(const ForeignLeaf& leaf);
 
     /// Of the vertices themselves: tighter than that of the bounding box.

@@ -91,8 +91,7 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
     if (look.features.slab) {
         uniforms.set("stepDepth", static_cast<float>(look.step));
         uniforms.set("maximumSteps", static_cast<float>(look.maximumSteps));
-        if (look.features.layerDepth)
-            uniforms.set("inFrontOfLayer", look.inFrontOfLayer ? 1 : 0);
+        if (look.features.layerDepth) uniforms.set("inFrontOfLayer", look.inFrontOfLayer ? 1 : 0);
         if (look.features.ranked) uniforms.set("rank", look.rank);
         uniforms.set("regionMin", look.regionMin);
         uniforms.set("regionMax", look.regionMax);
@@ -109,7 +108,8 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
 {
     if (!buffers.opaqueDepth) return;
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
-    if (features.layerDepth) state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.layerDepth.get());
+    if (features.layerDepth)
+        state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.layerDepth.get());
     if (features.ranked) {
         state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.layers.sorted[0].get());
         state.applyTextureAttribute(UNIT_SORTED_NEAR, buffers.layers.sorted[1].get());
@@ -212,8 +212,8 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     if (!_mesh || !_look || _mesh->batches.empty() || !program) return;
     const glm::dmat4 toEye = toGlm(state.getModelViewMatrix());
     const glm::dmat4 projection = toGlm(state.getProjectionMatrix());
-    const Result<PixelRays> rays = pixelRays(toEye, projection, viewportOf(state),
-                                             _look->referenceDepth, _look->center);
+    const Result<PixelRays> rays =
+        pixelRays(toEye, projection, viewportOf(state), _look->referenceDepth, _look->center);
     if (!rays) {
         reportError(rays.status);
         return;
@@ -235,7 +235,8 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     {
         const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
         const auto drawBatches = [&]() {
-            for (const BrickBatch& batch : _mesh->batches) drawBatch(renderInfo, uniforms, batch);
+            for (const BrickBatch& batch : _mesh->batches)
+                drawBatch(renderInfo, uniforms, batch);
         };
         if (_look->scissors.empty()) {
             drawBatches();
@@ -249,8 +250,8 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
     // OSG compares attributes by address: make it bind its own again whatever ours were.
-    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH, UNIT_LAYER_DEPTH, UNIT_SORTED_FAR,
-                          UNIT_SORTED_NEAR})
+    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH, UNIT_LAYER_DEPTH,
+                          UNIT_SORTED_FAR, UNIT_SORTED_NEAR})
         state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }
 

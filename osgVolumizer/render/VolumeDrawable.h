@@ -26,7 +26,7 @@ struct BrickBatch
 {
     osg::ref_ptr<osg::Texture3D> texture; ///< null without voxels
     std::size_t textureBytes = 0;
-    glm::vec3 clipMin{0.0f}, clipMax{0.0f};               ///< frame
+    glm::vec3 clipMin{0.0f}, clipMax{0.0f};            ///< frame
     glm::vec3 textureScale{1.0f}, textureOffset{0.0f}; ///< voxel -> texture coordinate
     unsigned firstIndex = 0, indexCount = 0;
 };
@@ -65,15 +65,15 @@ struct VolumeLook
     std::vector<glm::ivec4> scissors; ///< window rectangles to draw in; none: everywhere
     int maximumSteps = 1;
     glm::vec3 regionMin{0.0f}, regionMax{0.0f}; ///< slabs: box of the whole volume (frame)
-    /// Slabs: part of a pixel, in the frame. Faces are this much larger than what they stand for: which
-    /// pixels a segment covers is for the shader to say, whose answer does not depend on how GL
-    /// rounds vertices or whom it gives the pixels on an edge.
+    /// Slabs: part of a pixel, in the frame. Faces are this much larger than what they stand for:
+    /// which pixels a segment covers is for the shader to say, whose answer does not depend on how
+    /// GL rounds vertices or whom it gives the pixels on an edge.
     glm::dvec3 pixelMargin{0.0};
     std::vector<glm::vec4> planes; ///< the region's half-spaces (frame)
 };
 
-/// One leaf: a volume between two depths, drawn brick by brick, far to near. Made fresh for each view and
-/// frame, and never changed afterwards.
+/// One leaf: a volume between two depths, drawn brick by brick, far to near. Made fresh for each
+/// view and frame, and never changed afterwards.
 class VolumeDrawable : public osg::Drawable
 {
 public:

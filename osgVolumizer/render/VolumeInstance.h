@@ -33,7 +33,7 @@ struct VolumeInstance
     std::shared_ptr<const PreparedGeometry> prepared;
     std::shared_ptr<const VolumeLook> look;
     osg::ref_ptr<osg::RefMatrix> frameToEye; ///< model-view of the leaf
-    osg::ref_ptr<VolumeDrawable> drawable;   ///< of the leaf that stands for the volume until sorting
+    osg::ref_ptr<VolumeDrawable> drawable; ///< of the leaf that stands for the volume until sorting
     std::vector<SelectedBrick> bricks;
     core::SamplingParameters sampling;
 

@@ -1,13 +1,12 @@
 #include "VolumeProgram.h"
 
+#include "SharedStateSets.h"
+
 #include <osg/AlphaFunc>
 #include <osg/BlendFunc>
 #include <osg/CullFace>
 #include <osg/Depth>
 #include <osg/Program>
-
-#include <map>
-#include <mutex>
 
 namespace osgVolumizer {
 namespace render {
@@ -51,8 +50,8 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
     const std::string kind = features.slab ? "slab" : "slice";
     osg::ref_ptr<osg::Program> result = new osg::Program;
     result->setName("osgVolumizer " + kind);
-    result->addShader(new osg::Shader(osg::Shader::VERTEX,
-                                      header(features) + shaderSource(kind + ".vert.glsl")));
+    result->addShader(
+        new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource(kind + ".vert.glsl")));
     std::string fragment = header(features);
     for (const std::string& file : {std::string("voxels.glsl"), std::string("transfer.glsl"),
                                     std::string("ray.glsl"), std::string("shading.glsl"),
@@ -69,15 +68,16 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->setName("osgVolumizer");
     set->setDataVariance(osg::Object::STATIC);
     set->setAttributeAndModes(program(features), StateAttribute::ON | StateAttribute::PROTECTED);
-    set->setAttributeAndModes(new osg::BlendFunc(osg::BlendFunc::ONE,
-                                                 osg::BlendFunc::ONE_MINUS_SRC_ALPHA),
-                              StateAttribute::ON);
+    set->setAttributeAndModes(
+        new osg::BlendFunc(osg::BlendFunc::ONE, osg::BlendFunc::ONE_MINUS_SRC_ALPHA),
+        StateAttribute::ON);
     set->setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL, 0.0, 1.0, false),
                               StateAttribute::ON);
     // OSG's transparent bins drop fragments of alpha 0, which may still carry colour.
     set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f),
                               StateAttribute::OFF | StateAttribute::PROTECTED);
-    // Segments end at near and far themselves: rounding must not cut off the face on the near plane.
+    // Segments end at near and far themselves: rounding must not cut off the face on the near
+    // plane.
     if (features.slab) set->setMode(GL_DEPTH_CLAMP, StateAttribute::ON | StateAttribute::PROTECTED);
     set->setMode(GL_CULL_FACE, StateAttribute::OFF | StateAttribute::PROTECTED);
     set->addUniform(new osg::Uniform("voxels", int(UNIT_VOXELS)));
@@ -95,12 +95,7 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
 
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
 {
-    static std::mutex mutex;
-    static std::map<std::uint64_t, osg::ref_ptr<osg::StateSet>> sets;
-    std::lock_guard<std::mutex> lock(mutex);
-    osg::ref_ptr<osg::StateSet>& set = sets[features.key()];
-    if (!set) set = makeStateSet(features);
-    return set;
+    return sharedStateSet(features.key(), [&features]() { return makeStateSet(features); });
 }
 
 osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features)

@@ -13,14 +13,14 @@ namespace render {
 /// What a volume's shader has to do; nothing that is not asked for is compiled in.
 struct ProgramFeatures
 {
-    bool slab = true;             ///< march a segment per fragment, or shade one slice
+    bool slab = true;              ///< march a segment per fragment, or shade one slice
     bool voxelCoordinates = false; ///< as a vertex attribute; else the frame is the voxel frame
     bool vertexColors = false;
-    bool voxels = true;  ///< a brick texture
-    bool rgba = false;   ///< voxels are colours, not values to look up
+    bool voxels = true; ///< a brick texture
+    bool rgba = false;  ///< voxels are colours, not values to look up
     bool opaqueDepth = false;
     bool layerDepth = false; ///< surfaces split the segment; expects opaqueDepth
-    bool ranked = false; ///< the segment lies between two ranks of surfaces; expects opaqueDepth
+    bool ranked = false;    ///< the segment lies between two ranks of surfaces; expects opaqueDepth
     bool spherical = false; ///< slices are spheres about the eye
     bool exact = false;     ///< interpolate from fetched samples, in full precision
     bool nearest = false, cubic = false; ///< else linear
@@ -53,7 +53,8 @@ struct ProgramFeatures
 };
 
 /// Texture units of the samplers.
-enum TextureUnit : unsigned {
+enum TextureUnit : unsigned
+{
     UNIT_VOXELS,
     UNIT_TABLE,
     UNIT_OPAQUE_DEPTH,
@@ -63,7 +64,8 @@ enum TextureUnit : unsigned {
     UNIT_FIRST_LAYER ///< and the following: captured depths
 };
 /// Vertex attributes.
-enum Attribute : unsigned {
+enum Attribute : unsigned
+{
     ATTRIBUTE_POSITION,
     ATTRIBUTE_SLAB,             ///< slabs: nearest and farthest depth
     ATTRIBUTE_VOXEL_COORDINATE, ///< slices

@@ -1,5 +1,7 @@
 #include "Record.h"
 
+#include <osg/Endian>
+
 namespace osgVolumizer {
 namespace serializers {
 namespace {
@@ -14,6 +16,13 @@ Status checkCount(const std::string& name, std::size_t count, const std::vector<
 }
 
 } // namespace
+
+void Bytes::swapUnlessLittleEndian()
+{
+    if (osg::getCpuByteOrder() == osg::LittleEndian) return;
+    for (std::size_t i = 0; i + elementSize <= data.size(); i += elementSize)
+        osg::swapBytes(reinterpret_cast<char*>(data.data() + i), elementSize);
+}
 
 const char* kindName(std::size_t kind)
 {

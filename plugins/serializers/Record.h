@@ -15,6 +15,9 @@ struct Bytes
 {
     std::vector<unsigned char> data;
     unsigned elementSize = 1; ///< 1, 2, 4 or 8
+
+    /// To little-endian, as text has it, or back.
+    void swapUnlessLittleEndian();
 };
 
 /// The state of one object as named fields: what a scene file holds of it, in whichever encoding.
@@ -40,7 +43,8 @@ class Record
 public:
     /// The version of our format that is written, and the newest that can be read. Independent of
     /// OSG's.
-    static constexpr int version = 1;
+    /// 2: VolumeAppearance has Lookup and ExactFiltering.
+    static constexpr int version = 2;
 
     const std::vector<Field>& fields() const { return _fields; }
     void add(std::string name, Field::Value value, std::size_t valuesPerLine = 8)

@@ -20,7 +20,14 @@ struct Property
     const char* name;
     std::function<Field::Value(const VolumeAppearance&)> get;
     std::function<Status(const Record&, VolumeAppearance&)> set;
+    int since = 1; ///< version of the format that has it first; older files keep the default
 };
+
+Property sinceVersion(int version, Property property)
+{
+    property.since = version;
+    return property;
+}
 
 /// An enumeration whose values are 0, 1... by their names.
 template <auto Get, auto Set, int Count>
@@ -115,8 +122,8 @@ const std::vector<Property>& properties()
     static const std::vector<Property> list{
         choice<&A::getTechnique, &A::setTechnique>("Technique", techniqueNames),
         choice<&A::getInterpolation, &A::setInterpolation>("Interpolation", interpolationNames),
-        choice<&A::getLookup, &A::setLookup>("Lookup", lookupNames),
-        flag<&A::getExactFiltering, &A::setExactFiltering>("ExactFiltering"),
+        sinceVersion(2, choice<&A::getLookup, &A::setLookup>("Lookup", lookupNames)),
+        sinceVersion(2, flag<&A::getExactFiltering, &A::setExactFiltering>("ExactFiltering")),
         choice<&A::getSamplingMode, &A::setSamplingMode>("SamplingMode", modeNames),
         choice<&A::getSamplingSpace, &A::setSamplingSpace>("SamplingSpace", spaceNames),
         samplingPeriod(),
@@ -136,8 +143,11 @@ bool readSampling(osgDB::InputStream& is, VolumeAppearance& appearance)
 {
     Record record;
     Status status = readRecord(is, record);
+    int version = Record::version;
+    if (status.ok()) status = record.getInteger("Version", 1, Record::version, version);
     if (status.ok())
         for (const Property& property : properties()) {
+            if (property.since > version) continue;
             const Status set = property.set(record, appearance);
             if (status.ok()) status = set;
         }

@@ -282,6 +282,15 @@ TEST(PolygonizeSpaces, RefusalsNameTheFieldAndLeaveTheOutputAlone)
     p.periodVoxel = glm::dvec3(1e-6);
     p.maximumSamples = 1 << 13;
     expect(ErrorCode::TOO_LARGE, box, boxes, view, p, "bricks");
+    p.maximumSamples = std::numeric_limits<int>::max();
+    p.periodVoxel = glm::dvec3(1e-12);
+    expect(ErrorCode::TOO_LARGE, box, {}, view, p, "surfaces");
+    View tiny = view;
+    tiny.toEye = glm::scale(glm::dmat4(1.0), glm::dvec3(1e-310)) * tiny.toEye;
+    p = {};
+    p.mode = SamplingMode::VIEWPORT_ALIGNED;
+    EXPECT_FALSE(polygonize(box, {}, tiny, p, out).ok());
+    EXPECT_EQ(out.faces.vertices, before);
     // Spheres finer than memory.
     p = {};
     p.mode = SamplingMode::SPHERICAL;

@@ -14,9 +14,9 @@ namespace {
 const glm::ivec3 CELLS(37, 20, 18);
 
 /// Distance of the cell from a centre, so that thresholds give balls.
-std::vector<ValueRange> ball()
+std::vector<CellRange> ball()
 {
-    std::vector<ValueRange> r;
+    std::vector<CellRange> r;
     for (int z = 0; z < CELLS.z; ++z)
         for (int y = 0; y < CELLS.y; ++y)
             for (int x = 0; x < CELLS.x; ++x) {
@@ -89,11 +89,11 @@ TEST(SpaceLeaping, VoxelBoxesAndTetrahedraFillTheSame)
 TEST(SpaceLeaping, RefusesBadRanges)
 {
     SpaceLeaper leaper;
-    EXPECT_EQ(leaper.setRanges({2, 2, 2}, std::vector<ValueRange>(7)).code,
+    EXPECT_EQ(leaper.setRanges({2, 2, 2}, std::vector<CellRange>(7)).code,
               ErrorCode::SIZE_MISMATCH);
     EXPECT_EQ(leaper.setRanges({0, 2, 2}, {}).code, ErrorCode::VALUE_INVALID);
     EXPECT_EQ(leaper.setRanges({1 << 15, 1 << 15, 1 << 15}, {}).code, ErrorCode::TOO_LARGE);
-    std::vector<ValueRange> ranges(8);
+    std::vector<CellRange> ranges(8);
     ranges[5].minimum = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(leaper.setRanges({2, 2, 2}, ranges).index, 5);
 }

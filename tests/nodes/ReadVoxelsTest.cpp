@@ -407,6 +407,28 @@ TEST_F(ReadVoxels, PlainImagesThatClaimMoreThanTheyHold)
     EXPECT_TRUE(names(status, file)) << status.text;
 }
 
+// SGI's tag for several slices in a page, which OpenImageIO overlooks: no volume with slices
+// missing.
+TEST_F(ReadVoxels, SlicesWithinAPageAreRefused)
+{
+    const std::uint16_t entries[][3] = {{256, 4, 4},  {257, 4, 3}, {258, 3, 8},  {259, 3, 1},
+                                        {262, 3, 1},  {273, 4, 0}, {277, 3, 1},  {278, 4, 3},
+                                        {279, 4, 24}, {284, 3, 1}, {32997, 4, 2}};
+    const std::uint16_t count = 11;
+    std::string bytes("II*\0\x08\0\0\0", 8);
+    bytes.append(reinterpret_cast<const char*>(&count), 2);
+    for (const auto& e : entries) {
+        const std::uint32_t one = 1, value = e[0] == 273 ? 8 + 2 + 12 * count + 4 : e[2];
+        bytes.append(reinterpret_cast<const char*>(e), 4);
+        bytes.append(reinterpret_cast<const char*>(&one), 4);
+        bytes.append(reinterpret_cast<const char*>(&value), 4);
+    }
+    bytes.append(4 + 24, '\0');
+    const Status status = statusOf(writeBytes("sgi.tif", bytes));
+    EXPECT_EQ(ErrorCode::NOT_SUPPORTED, status.code);
+    EXPECT_TRUE(names(status, "sgi.tif has ImageDepth 2")) << status.text;
+}
+
 TEST_F(ReadVoxels, UnequalSlices)
 {
     writeImage<std::uint8_t>("s1.png", OIIO::ImageSpec(4, 4, 1, OIIO::TypeDesc::UINT8), 0);

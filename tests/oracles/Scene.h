@@ -42,8 +42,8 @@ struct Volume
     std::shared_ptr<const Field> field;
     Table table;       ///< of the field's values
     double unit = 1.0; ///< opacity unit, in object units
-    /// Where set, these take the place of field and table: extinction times red, green and blue, and
-    /// extinction, per unit.
+    /// Where set, these take the place of field and table: extinction times red, green and blue,
+    /// and extinction, per unit.
     std::array<std::shared_ptr<const Field>, 4> medium;
     /// Where set: what a colour becomes at a place in the field frame that lies there in the eye frame.
     std::function<glm::dvec3(const glm::dvec3& color, const glm::dvec3& field,
@@ -56,8 +56,8 @@ struct Volume
 Volume voxelVolume(std::shared_ptr<const Field> field, const glm::ivec3& size, const Table& table,
                    const glm::dvec3& spacing = glm::dvec3(1.0),
                    const glm::dvec3& origin = glm::dvec3(0.0));
-/// Lookup before interpolation: each sample of a grid is classified by the volume's table; extinction
-/// times colour, and extinction, are then interpolated. Sets the volume's medium.
+/// Lookup before interpolation: each sample of a grid is classified by the volume's table;
+/// extinction times colour, and extinction, are then interpolated. Sets the volume's medium.
 void classifySamples(Volume& volume, const Grid& samples, Grid::Interpolation how);
 /// A box in the object frame, filled by a field in that frame.
 Volume boxVolume(std::shared_ptr<const Field> field, const core::Box3d& box, const Table& table,

@@ -1,4 +1,5 @@
-// Incomplete and refused volumes: an error where something is wrong, and the rest of the scene is shown.
+// Incomplete and refused volumes: an error where something is wrong, and the rest of the scene is
+// shown.
 
 #include "Volumes.h"
 
@@ -20,7 +21,8 @@ namespace {
 
 RenderOptions view()
 {
-    return RenderOptions().size(64, 64).perspective(45.0).lookAt({24, -14, 20}, {6, 6, 6}, {0, 0, 1});
+    return RenderOptions().size(64, 64).perspective(45.0).lookAt({24, -14, 20}, {6, 6, 6},
+                                                                 {0, 0, 1});
 }
 
 // A source that fails for one brick, or for all.
@@ -149,8 +151,8 @@ TEST_F(BadInput, RefusedSetsLeaveTheOldOne)
     osg::ref_ptr<VolumeAppearance> volume = makeVolume(_voxels);
     auto* geometry = static_cast<VolumeGeometry*>(volume->getChild(0));
     const FloatImage expected = support::renderScene(volume, view());
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
-                             std::numeric_limits<double>::infinity()}) {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         core::TetraSet set = oneTetrahedron();
         set.vertices.setPosition(2, {1, bad, 1});
         const Status status = geometry->setTetraSet(set);

@@ -19,12 +19,13 @@ using support::RenderOptions;
 
 namespace {
 
-constexpr int SIZE = 33, BRICK = 9;            // 64 bricks
+constexpr int SIZE = 33, BRICK = 9; // 64 bricks
 const std::size_t BRICK_BYTES = BRICK * BRICK * BRICK * sizeof(float);
 
 RenderOptions view()
 {
-    return RenderOptions().size(64, 64).perspective(45.0).lookAt({60, -36, 50}, {16, 16, 16}, {0, 0, 1});
+    return RenderOptions().size(64, 64).perspective(45.0).lookAt({60, -36, 50}, {16, 16, 16},
+                                                                 {0, 0, 1});
 }
 
 // Knows the range of every region without reading it; notes what is read.
@@ -114,8 +115,8 @@ TEST_P(Counters, NothingIsUploadedTwice)
 
     // Another view, another table, another period: nothing of this touches the voxels.
     renderer.options().lookAt({-40, 50, 10}, {16, 16, 16}, {0, 0, 1});
-    ASSERT_TRUE(_twin.node->getLookupTable()->setPoints(smoothPoints(0.2),
-                                                        LookupTable::RANGE_FRACTION));
+    ASSERT_TRUE(
+        _twin.node->getLookupTable()->setPoints(smoothPoints(0.2), LookupTable::RANGE_FRACTION));
     _twin.setPeriod(0.5);
     renderer.render();
     EXPECT_EQ(value(renderer, "bricks drawn"), 64);

@@ -26,7 +26,8 @@ namespace {
 
 RenderOptions view()
 {
-    return RenderOptions().size(80, 80).perspective(45.0).lookAt({40, -20, 30}, {12, 10, 8}, {0, 0, 1});
+    return RenderOptions().size(80, 80).perspective(45.0).lookAt({40, -20, 30}, {12, 10, 8},
+                                                                 {0, 0, 1});
 }
 
 class Framebuffer : public support::GLTest,
@@ -46,7 +47,8 @@ protected:
 
 TEST_P(Framebuffer, EightBitsAreAsGoodAsTheyCanBe)
 {
-    // Hundreds of layers, each far below what 8 bits can hold, over an opaque and a clear background.
+    // Hundreds of layers, each far below what 8 bits can hold, over an opaque and a clear
+    // background.
     _twin.setPeriod(0.1);
     for (const float alpha : {0.0f, 1.0f}) {
         RenderOptions options = view();
@@ -68,8 +70,8 @@ TEST_P(Framebuffer, EightBitsWithOpaqueGeometry)
 {
     osg::ref_ptr<osg::Group> scene = new osg::Group;
     scene->addChild(_twin.node);
-    scene->addChild(support::makeQuad({osg::Vec3(-5, 2, -5), {30, 8, 2}, {28, 14, 20}, {-4, 12, 18}},
-                                      {0.2f, 0.7f, 0.3f, 1.0f}));
+    scene->addChild(support::makeQuad(
+        {osg::Vec3(-5, 2, -5), {30, 8, 2}, {28, 14, 20}, {-4, 12, 18}}, {0.2f, 0.7f, 0.3f, 1.0f}));
     RenderOptions options = view();
     const FloatImage expected = support::renderScene(scene, options);
     options.format = PictureTarget::BYTE;
@@ -79,18 +81,20 @@ TEST_P(Framebuffer, EightBitsWithOpaqueGeometry)
     EXPECT_LE(d.maximum, 1.0 / 255.0 + 2e-3);
 }
 
-// Textured and lit geometry in front of the volume that is drawn after it, with most kinds of state.
+// Textured and lit geometry in front of the volume that is drawn after it, with most kinds of
+// state.
 osg::ref_ptr<osg::Group> fixedFunctionGeometry()
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(8, 8, 1, GL_RGBA, GL_UNSIGNED_BYTE);
     for (int i = 0; i < 64; ++i)
         for (int c = 0; c < 4; ++c)
-            image->data()[4 * i + c] = static_cast<unsigned char>(c == 3 ? 255 : 40 + (i * (37 + 11 * c)) % 200);
+            image->data()[4 * i + c] =
+                static_cast<unsigned char>(c == 3 ? 255 : 40 + (i * (37 + 11 * c)) % 200);
     osg::ref_ptr<osg::Group> group = new osg::Group;
     for (int i = 0; i < 3; ++i) {
-        osg::ref_ptr<osg::ShapeDrawable> shape =
-            new osg::ShapeDrawable(new osg::Sphere(osg::Vec3(14.0f + 6.0f * i, 2.0f + 4.0f * i, 10.0f), 3.5f));
+        osg::ref_ptr<osg::ShapeDrawable> shape = new osg::ShapeDrawable(
+            new osg::Sphere(osg::Vec3(14.0f + 6.0f * i, 2.0f + 4.0f * i, 10.0f), 3.5f));
         shape->setColor(osg::Vec4(0.9f, 0.8f, 0.3f + 0.2f * i, 1.0f));
         shape->setUseDisplayList(i == 0);
         shape->setUseVertexBufferObjects(i == 1);
@@ -184,7 +188,8 @@ TEST_P(Framebuffer, StateAboveTheVolumeHarmsNothing)
     state->setAttributeAndModes(new osg::CullFace(osg::CullFace::BACK), on);
     state->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GREATER, 0.5f), on);
     osg::ref_ptr<osg::Program> program = new osg::Program;
-    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, "#version 120\nvoid main() { gl_FragColor = vec4(1.0); }\n"));
+    program->addShader(new osg::Shader(
+        osg::Shader::FRAGMENT, "#version 120\nvoid main() { gl_FragColor = vec4(1.0); }\n"));
     state->setAttributeAndModes(program, on);
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(4, 4, 1, GL_RGBA, GL_UNSIGNED_BYTE);

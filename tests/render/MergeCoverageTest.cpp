@@ -1,5 +1,5 @@
-// Surfaces cut by the borders of depth intervals: every pixel of a surface is drawn once, and shows no band.
-// The volume is as good as transparent, so that nothing but the surface decides a pixel.
+// Surfaces cut by the borders of depth intervals: every pixel of a surface is drawn once, and shows
+// no band. The volume is as good as transparent, so that nothing but the surface decides a pixel.
 
 #include "MixedScene.h"
 
@@ -16,7 +16,7 @@ using support::RenderOptions;
 
 namespace {
 
-constexpr int SIZE = 33; // voxels per axis
+constexpr int SIZE = 33;      // voxels per axis
 constexpr float ONCE = 0.25f; // what one fragment adds
 
 class Coverage : public support::GLTest
@@ -91,7 +91,8 @@ TEST_F(Coverage, SlantedQuadsAreDrawnOnce)
         const auto point = [&] { return glm::vec3(place(random), place(random), place(random)); };
         const glm::vec3 a = point(), b = point(), c = point();
         const RenderOptions options = viewFrom(random, i % 2 == 0);
-        const Count n = count(additive(quadMesh({a, b, b + c - a, c})), options, "merge_coverage_quad");
+        const Count n =
+            count(additive(quadMesh({a, b, b + c - a, c})), options, "merge_coverage_quad");
         if (n.missed + n.doubled)
             std::printf("  %d: %zu covered, %zu missed, %zu doubled, %zu intervals\n", i, n.covered,
                         n.missed, n.doubled, n.intervals);

@@ -1,6 +1,6 @@
-// Leaves of every kind in a volume. Each lies in one plane, so what the merged picture must be follows from
-// the leaf's picture without the volume, P, and from what the oracle sees in front of and behind the plane:
-// front + T_front * (P.rgb + (1 - P.a) * behind).
+// Leaves of every kind in a volume. Each lies in one plane, so what the merged picture must be
+// follows from the leaf's picture without the volume, P, and from what the oracle sees in front of
+// and behind the plane: front + T_front * (P.rgb + (1 - P.a) * behind).
 
 #include "MergeLeaves.h"
 #include "MixedScene.h"
@@ -38,7 +38,10 @@ struct Halves
     FloatImage front, behind;
 };
 
-glm::vec4 over(const glm::vec4& a, const glm::vec4& b) { return a + (1.0f - a.a) * b; }
+glm::vec4 over(const glm::vec4& a, const glm::vec4& b)
+{
+    return a + (1.0f - a.a) * b;
+}
 
 class Leaves : public support::GLTest, public ::testing::WithParamInterface<LeafKind>
 {

@@ -45,7 +45,8 @@ osg::ref_ptr<osg::Geometry> grid(int n)
     const osg::ref_ptr<osg::Geometry> geometry = square();
     osg::ref_ptr<osg::Vec3Array> points = new osg::Vec3Array;
     for (int y = 0; y <= n; ++y)
-        for (int x = 0; x <= n; ++x) points->push_back(osg::Vec3(END * x / n, END * y / n, 0.0f));
+        for (int x = 0; x <= n; ++x)
+            points->push_back(osg::Vec3(END * x / n, END * y / n, 0.0f));
     geometry->setVertexArray(points);
     geometry->removePrimitiveSet(0);
     return geometry;
@@ -82,7 +83,8 @@ osg::ref_ptr<osg::Node> dynamicGeometry()
     return g;
 }
 
-template <class Elements> osg::ref_ptr<osg::Node> strips()
+template <class Elements>
+osg::ref_ptr<osg::Node> strips()
 {
     const int n = 4;
     const osg::ref_ptr<osg::Geometry> g = grid(n);
@@ -90,7 +92,8 @@ template <class Elements> osg::ref_ptr<osg::Node> strips()
         osg::ref_ptr<Elements> strip = new Elements(y % 2 ? GL_QUAD_STRIP : GL_TRIANGLE_STRIP);
         for (int x = 0; x <= n; ++x)
             for (int up : {0, 1})
-                strip->push_back(static_cast<typename Elements::value_type>((y + up) * (n + 1) + x));
+                strip->push_back(
+                    static_cast<typename Elements::value_type>((y + up) * (n + 1) + x));
         g->addPrimitiveSet(strip);
     }
     return g;
@@ -126,7 +129,8 @@ osg::ref_ptr<osg::Node> lines()
     const osg::ref_ptr<osg::Geometry> g = grid(10);
     osg::ref_ptr<osg::DrawElementsUShort> lines = new osg::DrawElementsUShort(GL_LINES);
     for (int i = 0; i <= 10; ++i)
-        for (int k : {0, 10}) lines->push_back(static_cast<GLushort>(i * 11 + k));
+        for (int k : {0, 10})
+            lines->push_back(static_cast<GLushort>(i * 11 + k));
     g->addPrimitiveSet(lines);
     g->getOrCreateStateSet()->setAttributeAndModes(new osg::LineWidth(3.0f));
     return g;
@@ -145,7 +149,8 @@ osg::ref_ptr<osg::Node> perPrimitiveColors()
     const osg::ref_ptr<osg::Geometry> g = grid(1);
     g->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, 3));
     osg::ref_ptr<osg::DrawElementsUByte> other = new osg::DrawElementsUByte(GL_TRIANGLES);
-    for (unsigned char i : {1, 3, 2}) other->push_back(i);
+    for (unsigned char i : {1, 3, 2})
+        other->push_back(i);
     g->addPrimitiveSet(other);
     osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
     colors->push_back({1, 0, 0, 0.5f});
@@ -170,12 +175,14 @@ osg::ref_ptr<osg::Node> textured()
     const osg::ref_ptr<osg::Geometry> g = square();
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(4, 4, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-    for (int i = 0; i < 64; ++i) *(image->data() + i) = static_cast<unsigned char>(37 * i + 90);
+    for (int i = 0; i < 64; ++i)
+        *(image->data() + i) = static_cast<unsigned char>(37 * i + 90);
     osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
     texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
     g->getOrCreateStateSet()->setTextureAttributeAndModes(0, texture);
     osg::ref_ptr<osg::Vec2Array> coordinates = new osg::Vec2Array;
-    for (const osg::Vec2 c : {osg::Vec2(0, 0), {1, 0}, {1, 1}, {0, 1}}) coordinates->push_back(c);
+    for (const osg::Vec2 c : {osg::Vec2(0, 0), {1, 0}, {1, 1}, {0, 1}})
+        coordinates->push_back(c);
     g->setTexCoordArray(0, coordinates);
     return g;
 }
@@ -214,7 +221,8 @@ osg::ref_ptr<osg::Node> depthTestOff()
 osg::ref_ptr<osg::Node> depthRange()
 {
     const osg::ref_ptr<osg::Geometry> g = square();
-    g->getOrCreateStateSet()->setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 0.75, false));
+    g->getOrCreateStateSet()->setAttributeAndModes(
+        new osg::Depth(osg::Depth::LESS, 0.0, 0.75, false));
     return g;
 }
 
@@ -225,8 +233,10 @@ osg::ref_ptr<osg::Node> twoSided()
     for (const bool turned : {false, true}) {
         Mesh mesh = quadMesh({glm::vec3(0), {END / 2, 0, 0}, {END / 2, END, 0}, {0, END, 0}});
         if (turned) {
-            for (glm::vec3& p : mesh.points) p.x += END / 2;
-            for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+            for (glm::vec3& p : mesh.points)
+                p.x += END / 2;
+            for (auto& t : mesh.triangles)
+                std::swap(t[1], t[2]);
         }
         const osg::ref_ptr<osg::Geometry> g = makeGeometry(mesh, COLOR);
         g->getOrCreateStateSet()->setAttributeAndModes(new osg::CullFace(osg::CullFace::BACK));
@@ -238,11 +248,15 @@ osg::ref_ptr<osg::Node> twoSided()
 osg::ref_ptr<osg::Node> alphaFunc()
 {
     const osg::ref_ptr<osg::Node> g = vertexColors();
-    g->getOrCreateStateSet()->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GREATER, 0.5f));
+    g->getOrCreateStateSet()->setAttributeAndModes(
+        new osg::AlphaFunc(osg::AlphaFunc::GREATER, 0.5f));
     return g;
 }
 
-glm::vec4 blendAdd(const glm::vec4& leaf, const glm::vec4& behind) { return leaf + behind; }
+glm::vec4 blendAdd(const glm::vec4& leaf, const glm::vec4& behind)
+{
+    return leaf + behind;
+}
 
 osg::ref_ptr<osg::Node> additive()
 {
@@ -254,7 +268,8 @@ osg::ref_ptr<osg::Node> additive()
 // Filters what is behind: black on nothing, but for its alpha.
 glm::vec4 blendMultiply(const glm::vec4& leaf, const glm::vec4& behind)
 {
-    return leaf.a > 0.0f ? glm::vec4(glm::vec3(COLOR) * glm::vec3(behind), leaf.a + behind.a) : behind;
+    return leaf.a > 0.0f ? glm::vec4(glm::vec3(COLOR) * glm::vec3(behind), leaf.a + behind.a)
+                         : behind;
 }
 
 osg::ref_ptr<osg::Node> multiplicative()
@@ -285,8 +300,10 @@ class Immediate : public osg::Drawable
 public:
     Immediate() { setUseDisplayList(false); }
     Immediate(const Immediate& o, const osg::CopyOp& op) : osg::Drawable(o, op) {}
-    META_Object(test, Immediate)
-    osg::BoundingBox computeBoundingBox() const override { return {0, 0, 0, END, END, 0}; }
+    META_Object(test, Immediate) osg::BoundingBox computeBoundingBox() const override
+    {
+        return {0, 0, 0, END, END, 0};
+    }
     void drawImplementation(osg::RenderInfo&) const override
     {
         glColor4f(0.2f, 0.9f, 0.4f, 0.5f);
@@ -299,7 +316,8 @@ public:
     }
 };
 
-template <bool displayLists> osg::ref_ptr<osg::Node> customDrawable()
+template <bool displayLists>
+osg::ref_ptr<osg::Node> customDrawable()
 {
     const osg::ref_ptr<Immediate> drawable = new Immediate;
     drawable->setStateSet(square()->getStateSet());
@@ -399,10 +417,12 @@ osg::ref_ptr<osg::Node> skinned()
     rig->setStateSet(source->getStateSet());
     rig->setDataVariance(osg::Object::DYNAMIC);
     rig->setUseDisplayList(false);
-    osg::ref_ptr<osgAnimation::VertexInfluenceMap> influences = new osgAnimation::VertexInfluenceMap;
+    osg::ref_ptr<osgAnimation::VertexInfluenceMap> influences =
+        new osgAnimation::VertexInfluenceMap;
     osgAnimation::VertexInfluence& influence = (*influences)["bone"];
     influence.setName("bone");
-    for (unsigned i = 0; i < 4; ++i) influence.push_back(osgAnimation::VertexIndexWeight(i, 1.0f));
+    for (unsigned i = 0; i < 4; ++i)
+        influence.push_back(osgAnimation::VertexIndexWeight(i, 1.0f));
     rig->setInfluenceMap(influences);
     rig->setRigTransformImplementation(new osgAnimation::RigTransformSoftware);
     osg::ref_ptr<osgAnimation::Skeleton> skeleton = new osgAnimation::Skeleton;

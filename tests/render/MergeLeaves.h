@@ -14,7 +14,8 @@ struct LeafKind
 {
     const char* name;
     osg::ref_ptr<osg::Node> (*make)();
-    /// What the leaf's blend function makes of its picture on nothing and of what is behind (premultiplied).
+    /// What the leaf's blend function makes of its picture on nothing and of what is behind
+    /// (premultiplied).
     glm::vec4 (*blend)(const glm::vec4& leaf, const glm::vec4& behind);
     bool light = false;
 };

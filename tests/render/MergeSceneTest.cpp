@@ -1,5 +1,5 @@
-// Mixed scenes against the double-precision oracle: how far off a picture is at period 1, and how fast the
-// error falls with the period.
+// Mixed scenes against the double-precision oracle: how far off a picture is at period 1, and how
+// fast the error falls with the period.
 
 #include "MixedScene.h"
 
@@ -24,8 +24,14 @@ const Points COLD = {{0.0, {0.1, 0.9, 0.3, 0.002}}, {1.0, {0.2, 0.2, 1.0, 0.1}}}
 const Points GREY = {{0.0, {0.8, 0.8, 0.8, 0.0}}, {1.0, {0.9, 0.9, 0.2, 0.15}}};
 const glm::dvec4 GREEN(0.1, 0.9, 0.2, 0.6), RED(0.9, 0.1, 0.2, 0.4), BLUE(0.2, 0.3, 1.0, 0.5);
 
-osg::ref_ptr<Voxels> blob() { return makeBlob(glm::ivec3(SIZE), 5.5); }
-osg::ref_ptr<Voxels> bumpy() { return makeVoxels(glm::ivec3(SIZE), bumps); }
+osg::ref_ptr<Voxels> blob()
+{
+    return makeBlob(glm::ivec3(SIZE), 5.5);
+}
+osg::ref_ptr<Voxels> bumpy()
+{
+    return makeVoxels(glm::ivec3(SIZE), bumps);
+}
 
 /// Turned about the middle of the voxels, then moved.
 osg::Matrixd turned(double degrees, const osg::Vec3d& axis, const osg::Vec3d& move = osg::Vec3d())
@@ -47,8 +53,8 @@ struct Scene
 {
     const char* name;
     void (*build)(MixedScene&, RenderOptions&);
-    double order;            // that the error falls with, at least
-    double coarsest = 4.0;   // period
+    double order;          // that the error falls with, at least
+    double coarsest = 4.0; // period
 };
 
 void addSlantedPlane(MixedScene& scene)
@@ -105,7 +111,8 @@ void particles(MixedScene& scene, RenderOptions& options)
     seed.setLifeTime(0.0);
     const float size = 2.0f;
     seed.setSizeRange(osgParticle::rangef(size, size));
-    seed.setColorRange(osgParticle::rangev4(osg::Vec4(1, 0.8f, 0.2f, 1), osg::Vec4(1, 0.8f, 0.2f, 1)));
+    seed.setColorRange(
+        osgParticle::rangev4(osg::Vec4(1, 0.8f, 0.2f, 1), osg::Vec4(1, 0.8f, 0.2f, 1)));
     seed.setAlphaRange(osgParticle::rangef(0.5f, 0.5f));
     const osg::Matrixd toWorld = osg::Matrixd::inverse(options.view);
     const osg::Vec3d right = osg::Matrixd::transform3x3(osg::Vec3d(1, 0, 0), toWorld);
@@ -138,7 +145,8 @@ void threeVolumes(MixedScene& scene, RenderOptions& options)
 {
     twoVolumes(scene, options);
     scene.addVolume(blob(), GREY,
-                    osg::Matrixd::scale(1.3, 1.3, 1.3) * turned(-50.0, {1.0, 0.2, 0.7}, {-4, 2, -6}));
+                    osg::Matrixd::scale(1.3, 1.3, 1.3) *
+                        turned(-50.0, {1.0, 0.2, 0.7}, {-4, 2, -6}));
 }
 
 void twoVolumesAndPlane(MixedScene& scene, RenderOptions& options)
@@ -154,7 +162,8 @@ void deformedVolume(MixedScene& scene, RenderOptions&)
     osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
     appearance->setVoxels(voxels);
     appearance->setLookupTable(makeTable(WARM));
-    const glm::dvec3 directions[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    const glm::dvec3 directions[6] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                      {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
     std::vector<glm::dvec3> from, to;
     for (const glm::dvec3& d : directions) {
         from.push_back(MIDDLE + 16.0 * d);
@@ -167,7 +176,8 @@ void deformedVolume(MixedScene& scene, RenderOptions&)
     set.vertices.resize(7);
     for (unsigned i = 0; i < 7; ++i) {
         set.vertices.setPosition(i, to[i]);
-        for (int a = 0; a < 3; ++a) set.vertices.record(i)[a] = from[i][a];
+        for (int a = 0; a < 3; ++a)
+            set.vertices.record(i)[a] = from[i][a];
     }
     const auto grid = gridOf(*voxels);
     for (std::uint32_t x : {0u, 1u})
@@ -201,7 +211,8 @@ void cameraInside(MixedScene& scene, RenderOptions& options)
 
 void mirror(MixedScene& scene, RenderOptions& options)
 {
-    scene.addVolume(bumpy(), WARM, osg::Matrixd::scale(1, -1, 1) * osg::Matrixd::translate(0, 32, 0));
+    scene.addVolume(bumpy(), WARM,
+                    osg::Matrixd::scale(1, -1, 1) * osg::Matrixd::translate(0, 32, 0));
     addSlantedPlane(scene);
     scene.addMesh(sphereMesh({10, 24, 12}, 6.0, 24, 12), RED);
     options.view = options.view * osg::Matrixd::scale(-1, 1, 1);
@@ -230,14 +241,20 @@ void opaqueInside(MixedScene& scene, RenderOptions&)
     scene.addMesh(sphereMesh({24, 12, 18}, 7.0, 24, 12), {0.9, 0.9, 0.9, 1.0}, true);
 }
 
-const Scene SCENES[] = {
-    {"SlantedPlane", slantedPlane, 0.9},     {"CrossingPlanes", crossingPlanes, 0.9},
-    {"NestedSpheres", nestedSpheres, 0.9},   {"ThinRods", thinRods, 0.9},
-    {"Particles", particles, 0.9},           {"TwoVolumes", twoVolumes, 1.9},
-    {"ThreeVolumes", threeVolumes, 1.9},     {"TwoVolumesAndPlane", twoVolumesAndPlane, 0.9},
-    {"DeformedVolume", deformedVolume, 0.9}, {"CameraInside", cameraInside, 0.9},
-    {"Mirror", mirror, 0.9},                 {"OffAxis", offAxis, 0.9},
-    {"Orthographic", orthographic, 0.9},     {"OpaqueInside", opaqueInside, 0.9}};
+const Scene SCENES[] = {{"SlantedPlane", slantedPlane, 0.9},
+                        {"CrossingPlanes", crossingPlanes, 0.9},
+                        {"NestedSpheres", nestedSpheres, 0.9},
+                        {"ThinRods", thinRods, 0.9},
+                        {"Particles", particles, 0.9},
+                        {"TwoVolumes", twoVolumes, 1.9},
+                        {"ThreeVolumes", threeVolumes, 1.9},
+                        {"TwoVolumesAndPlane", twoVolumesAndPlane, 0.9},
+                        {"DeformedVolume", deformedVolume, 0.9},
+                        {"CameraInside", cameraInside, 0.9},
+                        {"Mirror", mirror, 0.9},
+                        {"OffAxis", offAxis, 0.9},
+                        {"Orthographic", orthographic, 0.9},
+                        {"OpaqueInside", opaqueInside, 0.9}};
 
 class MergeScene : public support::GLTest, public ::testing::WithParamInterface<Scene>
 {
@@ -258,9 +275,10 @@ TEST_P(MergeScene, AgreesWithTheOracle)
         const Judged j = judge(scene, options, expected, away);
         periods.push_back(period);
         errors.push_back(j.away.rmse);
-        std::printf("  period %5.2f: rmse %.2e (away %.2e), maximum away %.2e at %d %d, bias %.1e\n",
-                    period, j.all.rmse, j.away.rmse, j.away.maximum, j.away.worstX, j.away.worstY,
-                    j.away.bias);
+        std::printf(
+            "  period %5.2f: rmse %.2e (away %.2e), maximum away %.2e at %d %d, bias %.1e\n",
+            period, j.all.rmse, j.away.rmse, j.away.maximum, j.away.worstX, j.away.worstY,
+            j.away.bias);
         if (period != 1.0) continue;
         save(j, std::string("merge_") + GetParam().name);
         EXPECT_LE(j.all.rmse, 4e-3);

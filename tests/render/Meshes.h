@@ -11,8 +11,8 @@
 namespace osgVolumizer {
 namespace test {
 
-/// Triangles that share points, in the world frame. Points are what floats hold, so that GL and the oracle
-/// have the same ones.
+/// Triangles that share points, in the world frame. Points are what floats hold, so that GL and the
+/// oracle have the same ones.
 struct Mesh
 {
     std::vector<glm::vec3> points;
@@ -40,7 +40,9 @@ inline Mesh sphereMesh(const glm::dvec3& center, double radius, int slices, int 
             mesh.points.push_back(at(pi * i / stacks, 2.0 * pi * j / slices));
     mesh.points.push_back(at(pi, 0.0));
     const auto last = static_cast<unsigned>(mesh.points.size() - 1);
-    const auto ring = [&](int i, int j) { return static_cast<unsigned>(1 + i * slices + j % slices); };
+    const auto ring = [&](int i, int j) {
+        return static_cast<unsigned>(1 + i * slices + j % slices);
+    };
     for (int j = 0; j < slices; ++j) {
         mesh.triangles.push_back({0, ring(0, j), ring(0, j + 1)});
         for (int i = 0; i + 2 < stacks; ++i) {

@@ -21,7 +21,8 @@ constexpr double HIGHEST = 51.0; // small whole numbers: every type holds them
 
 RenderOptions view()
 {
-    return RenderOptions().size(72, 72).perspective(45.0).lookAt({28, -16, 24}, {8, 8, 8}, {0, 0, 1});
+    return RenderOptions().size(72, 72).perspective(45.0).lookAt({28, -16, 24}, {8, 8, 8},
+                                                                 {0, 0, 1});
 }
 
 std::vector<float> wholeNumbers()
@@ -30,7 +31,8 @@ std::vector<float> wholeNumbers()
     for (int z = 0; z < SIZE; ++z)
         for (int y = 0; y < SIZE; ++y)
             for (int x = 0; x < SIZE; ++x)
-                values.push_back(static_cast<float>(std::round(HIGHEST * bumps(glm::dvec3(x, y, z)))));
+                values.push_back(
+                    static_cast<float>(std::round(HIGHEST * bumps(glm::dvec3(x, y, z)))));
     return values;
 }
 
@@ -53,7 +55,8 @@ osg::ref_ptr<Voxels> voxelsOf(VoxelType type, int components, const void* data, 
 osg::ref_ptr<Voxels> scalars(VoxelType type, const std::vector<float>& values)
 {
     std::vector<unsigned char> bytes(values.size() * voxelTypeSize(type));
-    core::convertVoxels(values.data(), VoxelType::FLOAT32, bytes.data(), type, values.size(), 1.0, 0.0);
+    core::convertVoxels(values.data(), VoxelType::FLOAT32, bytes.data(), type, values.size(), 1.0,
+                        0.0);
     return voxelsOf(type, 1, bytes.data(), bytes.size());
 }
 
@@ -84,9 +87,9 @@ TEST_P(VoxelTypes, AllShowTheSame)
     const std::vector<float> values = wholeNumbers();
     const FloatImage expected = pictureOf(scalars(VoxelType::FLOAT32, values), GetParam());
     EXPECT_GT(support::coveredPixels(expected, 0.2f).count(), 1000u);
-    for (const VoxelType type : {VoxelType::UINT8, VoxelType::INT8, VoxelType::UINT16, VoxelType::INT16,
-                                 VoxelType::UINT32, VoxelType::INT32, VoxelType::HALF,
-                                 VoxelType::FLOAT64}) {
+    for (const VoxelType type :
+         {VoxelType::UINT8, VoxelType::INT8, VoxelType::UINT16, VoxelType::INT16, VoxelType::UINT32,
+          VoxelType::INT32, VoxelType::HALF, VoxelType::FLOAT64}) {
         const FloatImage image = pictureOf(scalars(type, values), GetParam());
         // Texels of 16 bits come back as floats of 24; their range is 1285 times the data's.
         EXPECT_LT(compare(image, expected).maximum, 1e-4) << int(type);

@@ -8,7 +8,7 @@
 namespace osgVolumizer {
 namespace core {
 
-Status SpaceLeaper::setRanges(const glm::ivec3& cells, std::vector<ValueRange> ranges)
+Status SpaceLeaper::setRanges(const glm::ivec3& cells, std::vector<CellRange> ranges)
 {
     const double count = double(cells.x) * cells.y * cells.z;
     if (cells.x < 1 || cells.y < 1 || cells.z < 1)

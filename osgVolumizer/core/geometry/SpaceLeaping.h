@@ -15,7 +15,7 @@ namespace osgVolumizer {
 namespace core {
 
 /// Lowest and highest value in a cell.
-struct ValueRange
+struct CellRange
 {
     float minimum = 0.0f, maximum = 0.0f;
 };
@@ -33,7 +33,7 @@ public:
     /// \param ranges one per cell, x fastest
     /// SIZE_MISMATCH, VALUE_INVALID (NaN or minimum > maximum, with the index), TOO_LARGE for more
     /// than 2^31 cells. Nothing is occupied until update().
-    Status setRanges(const glm::ivec3& cells, std::vector<ValueRange> ranges);
+    Status setRanges(const glm::ivec3& cells, std::vector<CellRange> ranges);
 
     /// Decides anew which cells are occupied; true where any changed. `opaque` tells whether the
     /// table shows anything of values in a range.
@@ -67,7 +67,7 @@ private:
 
     glm::ivec3 _cells{0};
     glm::ivec3 _regions{0};
-    std::vector<ValueRange> _ranges;
+    std::vector<CellRange> _ranges;
     std::vector<std::uint8_t> _occupied;
     std::vector<std::vector<Box3i>> _regionBoxes;
     std::vector<Box3i> _boxes;

@@ -112,7 +112,10 @@ void TetraBlocks::findEdges()
     static constexpr int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
     edges.clear();
     tetraEdges.resize(tetrahedra.size());
-    _edgeTable.assign(MAX_VERTICES * MAX_VERTICES, {NONE, 0});
+    std::size_t width = 0;
+    for (const Block& b : blocks)
+        width = std::max<std::size_t>(width, b.vertexCount);
+    _edgeTable.assign(width * width, {NONE, 0});
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {
         Block& block = blocks[i];
         block.firstEdge = static_cast<std::uint32_t>(edges.size());
@@ -120,7 +123,7 @@ void TetraBlocks::findEdges()
             for (int e = 0; e < 6; ++e) {
                 std::uint8_t a = tetrahedra[t].v[ends[e][0]], b = tetrahedra[t].v[ends[e][1]];
                 if (a > b) std::swap(a, b);
-                EdgeEntry& entry = _edgeTable[a * MAX_VERTICES + b];
+                EdgeEntry& entry = _edgeTable[a * width + b];
                 if (entry.block != i) {
                     entry = {i, static_cast<std::uint16_t>(block.edgeCount++)};
                     edges.push_back({a, b});

@@ -9,7 +9,8 @@ namespace core {
 
 /// Record layouts, named as in the OpenGL Volumizer guide: T voxel coordinates, C colour,
 /// V position, in this order, then any user values (normals, a scalar...).
-enum class VertexLayout : int {
+enum class VertexLayout : int
+{
     V3F,
     T3F_V3F,
     C3F_V3F,
@@ -36,15 +37,23 @@ struct VertexFormat
         switch (l) {
         case VertexLayout::T3F_C3F_V3F:
         case VertexLayout::T3F_C4F_V3F:
-        case VertexLayout::T3F_V3F: voxelCoordinateSize = 3; break;
-        default: break;
+        case VertexLayout::T3F_V3F:
+            voxelCoordinateSize = 3;
+            break;
+        default:
+            break;
         }
         switch (l) {
         case VertexLayout::C3F_V3F:
-        case VertexLayout::T3F_C3F_V3F: colorSize = 3; break;
+        case VertexLayout::T3F_C3F_V3F:
+            colorSize = 3;
+            break;
         case VertexLayout::C4F_V3F:
-        case VertexLayout::T3F_C4F_V3F: colorSize = 4; break;
-        default: break;
+        case VertexLayout::T3F_C4F_V3F:
+            colorSize = 4;
+            break;
+        default:
+            break;
         }
         if (userValues > 0) layout = VertexLayout::USER;
     }

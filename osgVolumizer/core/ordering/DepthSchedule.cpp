@@ -15,8 +15,8 @@ bool takesPart(const ScheduleMember& m)
            std::isfinite(m.depth.farDepth);
 }
 
-// Intervals between neighbouring ends of members, far to near, with those who are active in each; equal
-// neighbours are joined.
+// Intervals between neighbouring ends of members, far to near, with those who are active in each;
+// equal neighbours are joined.
 std::vector<ScheduledInterval> elementaryIntervals(const std::vector<ScheduleMember>& members)
 {
     std::vector<double> ends;
@@ -33,7 +33,8 @@ std::vector<ScheduledInterval> elementaryIntervals(const std::vector<ScheduleMem
         interval.depth = {ends[i + 1], ends[i]};
         for (std::size_t k = 0; k < members.size(); ++k) {
             if (!takesPart(members[k]) || !members[k].depth.overlaps(interval.depth)) continue;
-            (members[k].volume ? interval.volumes : interval.surfaces).push_back(static_cast<int>(k));
+            (members[k].volume ? interval.volumes : interval.surfaces)
+                .push_back(static_cast<int>(k));
         }
         if (interval.volumes.empty() && interval.surfaces.empty()) continue;
         // Surfaces by themselves need no order of ours: one stretch, whoever starts or ends in it.
@@ -58,7 +59,8 @@ double wantedThickness(const ScheduledInterval& interval,
     if (interval.volumes.empty()) return 0.0;
     if (interval.volumes.size() == 1 && interval.surfaces.empty()) return 0.0;
     double step = std::numeric_limits<double>::infinity();
-    for (int v : interval.volumes) step = std::min(step, members[static_cast<std::size_t>(v)].step);
+    for (int v : interval.volumes)
+        step = std::min(step, members[static_cast<std::size_t>(v)].step);
     return step * (interval.volumes.size() > 1 ? limits.volumeSteps : limits.surfaceSteps);
 }
 

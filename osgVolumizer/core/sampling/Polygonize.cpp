@@ -1,14 +1,12 @@
 #include "Polygonize.h"
 
-#include "../geometry/ConvexPieces.h"
-#include "Refine.h"
-#include "Slicer.h"
-#include "SurfaceFamily.h"
+#include "PolygonizerPrivate.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 
 namespace osgVolumizer {
 namespace core {
@@ -46,10 +44,11 @@ SurfaceLattice viewLattice(const ViewFamily& family, double nearest, double fart
     double spacing = h * std::max(1.0, std::ceil((high - low) / h / maximum));
     while (std::ceil(high / spacing) - std::floor(low / spacing) > maximum)
         spacing *= 2.0;
+    const double layers = std::ceil(high / spacing) - std::floor(low / spacing);
     SurfaceLattice lattice;
     lattice.spacing = spacing;
     lattice.farDepth = std::ceil(high / spacing) * spacing - family.anchorDepth;
-    lattice.count = static_cast<int>(std::ceil(high / spacing) - std::floor(low / spacing));
+    lattice.count = layers >= 1.0 && layers <= maximum ? static_cast<int>(layers) : 0;
     return lattice;
 }
 
@@ -67,37 +66,6 @@ void visibleHalfSpaces(const View& view, const glm::dvec3& origin, std::vector<P
 }
 
 } // namespace
-
-struct Polygonizer::Private
-{
-    std::shared_ptr<const TetraSet> tetraSet;
-    Box3d bounds;
-    BoxIndex boxes; // as set
-    Executor* executor = nullptr;
-
-    TetraBlocks blocks; // of the tetra set, about an origin
-    BoxIndex localBoxes;
-    bool blocksCurrent = false, placesCurrent = false;
-
-    // One view.
-    TetraBlocks refinedBlocks;
-    Refiner refiner;
-    TetraSet refined;
-    std::vector<double> depths; // per vertex, where they are not those of planes
-    std::vector<double> surfaceDepths;
-    std::vector<int> order, rank; // surfaces far to near, and the inverse
-    SlicePlan plan;
-    Slicer slicer;
-    double nearest = 0.0, farthest = 0.0;
-
-    Status prepareBlocks(const glm::dvec3& origin);
-    void usePlanes(const ViewFamily& family, const glm::dvec3& origin);
-    Status useFunction(const Refiner::Function& depth, double tolerance, const glm::dvec3& origin);
-    Status measure();
-    Status cut(const SurfaceLattice& lattice, double eyeDepth, PolygonizedFaces& out);
-    Status cutPlane(const Plane& plane, const glm::dvec3& origin,
-                    const std::vector<std::vector<Plane>>* pieces, PolygonizedFaces& out);
-};
 
 Polygonizer::Polygonizer() : _private(new Private) {}
 Polygonizer::~Polygonizer() = default;
@@ -206,8 +174,8 @@ Status Polygonizer::Private::measure()
             farthest = std::max(farthest, d);
         }
     };
-    // The extremes lie in few blocks: those that reach farthest come first, the others are looked into
-    // only if they may reach farther still.
+    // The extremes lie in few blocks: those that reach farthest come first, the others are looked
+    // into only if they may reach farther still.
     struct Range
     {
         double nearest, farthest;
@@ -240,11 +208,16 @@ Status Polygonizer::Private::cut(const SurfaceLattice& lattice, double eyeDepth,
                                  PolygonizedFaces& out)
 {
     plan.lattice = lattice;
-    // The surfaces that the set reaches; a set without volume reaches none.
     const double scale = 1.0 / lattice.spacing;
+    if (!std::isfinite(lattice.farDepth) || !(scale > 0.0) || !std::isfinite(scale))
+        return {ErrorCode::VALUE_INVALID, "polygonize: surfaces at a distance of " +
+                                              std::to_string(lattice.spacing) +
+                                              " are beyond double precision."};
+    // The surfaces that the set reaches; a set without volume reaches none.
     plan.firstSurface = surfacesPassed((lattice.farDepth - farthest) * scale, 0, lattice.count);
     plan.surfaceCount =
         surfacesPassed((lattice.farDepth - nearest) * scale, 0, lattice.count) - plan.firstSurface;
+    if (Status s = Slicer::checkSize(plan); !s) return s;
     const auto n = static_cast<std::size_t>(plan.surfaceCount);
     surfaceDepths.resize(n);
     order.resize(n);
@@ -327,59 +300,6 @@ Status Polygonizer::polygonize(const SurfaceFamily& family, const SamplingParame
         return s;
     out.axis = -1;
     return {};
-}
-
-Status Polygonizer::Private::cutPlane(const Plane& plane, const glm::dvec3& origin,
-                                      const std::vector<std::vector<Plane>>* pieces,
-                                      PolygonizedFaces& out)
-{
-    const glm::dvec3& n = plane.normal;
-    const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-    if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(plane.offset / length))
-        return {ErrorCode::VALUE_INVALID,
-                "polygonizeMPR: the plane's normal has length " + std::to_string(length) + "."};
-    SamplingParameters parameters;
-    parameters.outputOrigin = origin;
-    if (Status s = parameters.validate(); !s) return s;
-    if (Status s = prepareBlocks(origin); !s) return s;
-    plan.blocks = &blocks;
-    plan.depths = nullptr;
-    plan.gradient = n / -length;
-    plan.depthField = tetraSet->vertices.format().positionOffset();
-    plan.corner = n * (-plane.offset / (length * length)) - origin;
-    plan.primitive = false;
-    plan.pieces = pieces;
-    plan.visible.clear();
-    if (Status s = measure(); !s) return s;
-    // One layer, with the plane in its middle.
-    SurfaceLattice lattice;
-    lattice.farDepth = 0.5;
-    lattice.count = 1;
-    Status s = cut(lattice, NONE, out);
-    plan.pieces = nullptr;
-    if (!s) return s;
-    out.axis = -1;
-    out.spacing = 0.0;
-    return {};
-}
-
-Status Polygonizer::polygonizeMPR(const Plane& plane, const glm::dvec3& outputOrigin,
-                                  PolygonizedFaces& out)
-{
-    return _private->cutPlane(plane, outputOrigin, nullptr, out);
-}
-
-Status Polygonizer::polygonizeMPR(const std::vector<glm::dvec3>& polygon,
-                                  const glm::dvec3& outputOrigin, PolygonizedFaces& out)
-{
-    Plane plane;
-    std::vector<std::vector<Plane>> pieces;
-    if (Status s = convexPieces(polygon, plane, pieces); !s) return s;
-    for (std::vector<Plane>& piece : pieces)
-        for (Plane& p : piece)
-            p.offset += p.normal.x * outputOrigin.x + p.normal.y * outputOrigin.y +
-                        p.normal.z * outputOrigin.z;
-    return _private->cutPlane(plane, outputOrigin, &pieces, out);
 }
 
 Status polygonize(const TetraSet& tetraSet, const std::vector<Box3d>& clipBoxes, const View& view,

@@ -17,7 +17,8 @@ namespace {
 constexpr std::size_t MAX_BINS = std::size_t(1) << 24;
 constexpr std::size_t BLOCKS_PER_CHUNK = 8; ///< fewer are not worth a task
 
-/// What one face of each case adds to its bin: 4 indices where two vertices are on either side, else
+/// What one face of each case adds to its bin: 4 indices where two vertices are on either side,
+/// else
 /// 3. The cases without a face do not occur.
 constexpr std::array<Slicer::Count, 16> FACE_COUNTS = [] {
     std::array<Slicer::Count, 16> counts{};
@@ -141,7 +142,8 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
     chunk.spacings.clear();
     const TetraBlocks& blocks = *plan.blocks;
     const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
-    const int* const rank = plan.rank - plan.firstSurface;
+    const int* const rank = plan.rank;
+    const auto firstSurface = static_cast<std::uint32_t>(plan.firstSurface);
     for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
         const std::size_t start = chunk.entryCount;
         countBlock(plan, chunk, b);
@@ -152,7 +154,7 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
         const std::uint64_t* const end = chunk.entries.data() + chunk.entryCount;
         for (const std::uint64_t* entry = chunk.entries.data() + start; entry != end; ++entry) {
             const std::uint64_t e = *entry;
-            std::size_t bin = static_cast<std::uint32_t>(rank[e >> 32]);
+            std::size_t bin = static_cast<std::uint32_t>(rank[(e >> 32) - firstSurface]);
             if (places)
                 bin = bin * brickCount +
                       (places[static_cast<std::uint32_t>(e) >> 8] & TetraBlocks::BOX_MASK);
@@ -208,99 +210,20 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
     return true;
 }
 
-namespace {
-
-struct Target
+Status Slicer::checkSize(const SlicePlan& plan)
 {
-    std::uint32_t* indices;
-    std::uint32_t* faceOffsets;
-};
-
-/// Writes the faces of one block. All that the loop needs is in local variables, since the compiler has
-/// to expect that its stores change anything else.
-template <bool Bricks>
-void emitEntries(const SlicePlan& plan, Slicer::Chunk& chunk, const TetraBlocks::Block& block,
-                 std::size_t begin, std::size_t end, Target target)
-{
-    const TetraBlocks& blocks = *plan.blocks;
-    const TetraBlocks::TetraEdges* const tetraEdges = blocks.tetraEdges.data() + block.firstTetra;
-    const TetraBlocks::Place* const places =
-        Bricks ? blocks.places.data() + block.firstTetra : nullptr;
-    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
-    const std::uint32_t* const edgePoints = chunk.edgePoints.data();
-    const int* const rank = plan.rank - plan.firstSurface;
-    Slicer::Count* const cursors = chunk.fast.data();
-    const std::uint64_t* const last = chunk.entries.data() + end;
-    for (const std::uint64_t* entry = chunk.entries.data() + begin; entry != last; ++entry) {
-        const std::uint64_t e = *entry;
-        const auto surface = static_cast<std::uint32_t>(e >> 32);
-        const std::uint32_t t = static_cast<std::uint32_t>(e) >> 8;
-        const TetraCase& which = TETRA_CASES[e & 15u];
-        std::size_t bin = static_cast<std::uint32_t>(rank[surface]);
-        if (Bricks) bin = bin * brickCount + (places[t] & TetraBlocks::BOX_MASK);
-        const Slicer::Count cursor = cursors[bin];
-        cursors[bin] = cursor + Slicer::count(1, static_cast<std::uint32_t>(which.count));
-        target.faceOffsets[Slicer::faceCount(cursor)] = Slicer::indexCount(cursor);
-        std::uint32_t* const to = target.indices + Slicer::indexCount(cursor);
-        const std::uint16_t* const edges = tetraEdges[t].e;
-        to[0] = edgePoints[edges[which.edge[0]]] + surface;
-        to[1] = edgePoints[edges[which.edge[1]]] + surface;
-        to[2] = edgePoints[edges[which.edge[2]]] + surface;
-        // Of a triangle the last corner is the third once more.
-        to[which.count - 1] = edgePoints[edges[which.edge[3]]] + surface;
-    }
-}
-
-} // namespace
-
-void Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
-{
-    const TetraBlocks& blocks = *plan.blocks;
-    const Target target{out.faces.indices.data(), out.faces.faceOffsets.data()};
-    std::size_t i = 0;
-    for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
-        const std::size_t end = chunk.blockEntries[b - chunk.firstBlock];
-        if (i == end) continue;
-        const TetraBlocks::Block& block = blocks.blocks[b];
-        listPoints(blocks.edges.data() + block.firstEdge, block.edgeCount,
-                   _passed.data() + block.firstVertex, chunk);
-        writePoints(blocks, block, chunk,
-                    out.faces.vertices.data() + chunk.vertexCount * (blocks.recordSize() - 1));
-        chunk.vertexCount += chunk.pointCount;
-
-        if (blocks.places.empty()) emitEntries<false>(plan, chunk, block, i, end, target);
-        else
-            emitEntries<true>(plan, chunk, block, i, end, target);
-        i = end;
-    }
-    emitClipped(plan, chunk, out);
-}
-
-void Slicer::emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
-{
-    const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
-    std::copy(chunk.vertices.begin(), chunk.vertices.end(),
-              out.faces.vertices.begin() +
-                  static_cast<std::ptrdiff_t>(chunk.clippedVertex * stride));
-    auto vertex = static_cast<std::uint32_t>(chunk.clippedVertex);
-    for (std::size_t f = 0; f < chunk.bins.size(); ++f) {
-        Count& cursor = chunk.clipped[chunk.bins[f]];
-        out.faces.faceOffsets[faceCount(cursor)] = indexCount(cursor);
-        if (plan.primitive) out.faceSpacings[faceCount(cursor)] = chunk.spacings[f];
-        for (std::uint32_t k = 0; k < chunk.sizes[f]; ++k)
-            out.faces.indices[indexCount(cursor) + k] = vertex++;
-        cursor += count(1, chunk.sizes[f]);
-    }
+    if (static_cast<std::size_t>(plan.surfaceCount) * static_cast<std::size_t>(plan.brickCount) <=
+        MAX_BINS)
+        return {};
+    return {ErrorCode::TOO_LARGE, "polygonize: " + std::to_string(plan.surfaceCount) +
+                                      " surfaces times " + std::to_string(plan.brickCount) +
+                                      " bricks are more than 2^24."};
 }
 
 Status Slicer::run(const SlicePlan& plan, Executor* executor, PolygonizedFaces& out)
 try {
     const std::size_t bins =
         static_cast<std::size_t>(plan.surfaceCount) * static_cast<std::size_t>(plan.brickCount);
-    if (bins > MAX_BINS)
-        return {ErrorCode::TOO_LARGE, "polygonize: " + std::to_string(plan.surfaceCount) +
-                                          " surfaces times " + std::to_string(plan.brickCount) +
-                                          " bricks are more than 2^24."};
     // Each chunk counts for itself; with many bins that alone would cost more than it gains.
     const std::size_t blockCount = plan.blocks->blocks.size();
     std::size_t chunkCount = executor ? static_cast<std::size_t>(executor->concurrency()) : 1;

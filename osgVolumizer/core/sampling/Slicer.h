@@ -45,7 +45,10 @@ struct SlicePlan
 class Slicer
 {
 public:
-    /// Fills faces, ranges and faceSpacings of `out`; leaves it alone on failure (TOO_LARGE).
+    /// TOO_LARGE for more pairs of surface and brick than there is room for.
+    static Status checkSize(const SlicePlan& plan);
+    /// Expects checkSize(). Fills faces, ranges and faceSpacings of `out`; leaves it alone on
+    /// failure (TOO_LARGE).
     Status run(const SlicePlan& plan, Executor* executor, PolygonizedFaces& out);
 
     /// Depth of a vertex, from its record.
@@ -57,8 +60,8 @@ public:
                plan.gradient.z * (p[2] - plan.corner.z);
     }
 
-    /// Bounds of the depths in a block, by one box test; a little wider than rounding needs. All depths
-    /// there may be, where they are not those of planes.
+    /// Bounds of the depths in a block, by one box test; a little wider than rounding needs. All
+    /// depths there may be, where they are not those of planes.
     static void depthRange(const SlicePlan& plan, const TetraBlocks::Block& block, double& nearest,
                            double& farthest);
 

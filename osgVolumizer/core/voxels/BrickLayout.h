@@ -17,7 +17,8 @@ struct BrickPlace
 };
 
 /// What happens where the volume's size is no multiple of the brick's.
-enum class PartialBricks : int {
+enum class PartialBricks : int
+{
     SHRINK_TO_FIT, ///< the last brick of each axis is smaller
     TRUNCATE,      ///< what does not fill a brick is left out
     AVERAGE_UP     ///< all bricks keep their size: the last is moved back, sharing more samples
@@ -31,8 +32,8 @@ class OSGVOLUMIZER_CORE_EXPORT BrickLayout
 public:
     BrickLayout() = default;
     /// \param size samples of the volume per axis, each >= 1
-    /// \param brickSize samples of a brick per axis, each > overlap; larger than `size` means one brick
-    /// Refuses (VALUE_INVALID, TOO_LARGE) anything else, and more than 2^31 bricks.
+    /// \param brickSize samples of a brick per axis, each > overlap; larger than `size` means one
+    /// brick Refuses (VALUE_INVALID, TOO_LARGE) anything else, and more than 2^31 bricks.
     static Result<BrickLayout> create(const glm::ivec3& size, const glm::ivec3& brickSize,
                                       int overlap = 1,
                                       PartialBricks partial = PartialBricks::SHRINK_TO_FIT);

@@ -9,7 +9,18 @@
 namespace osgVolumizer {
 
 /// Type of one component of a voxel. Values are calibrated data: an INT16 of -1000 means -1000.
-enum class VoxelType : int { INT8, UINT8, INT16, UINT16, INT32, UINT32, HALF, FLOAT32, FLOAT64 };
+enum class VoxelType : int
+{
+    INT8,
+    UINT8,
+    INT16,
+    UINT16,
+    INT32,
+    UINT32,
+    HALF,
+    FLOAT32,
+    FLOAT64
+};
 
 /// Bytes of one component.
 OSGVOLUMIZER_CORE_EXPORT std::size_t voxelTypeSize(VoxelType type);

@@ -55,7 +55,10 @@ void main()
     vec3 directionEye = rayDirectionEye * vec3(gl_FragCoord.xy - windowCenter, 1.0);
     c.rgb = shade(c.rgb, voxelCoordinate, eyePosition, -normalize(directionEye));
 #endif
-    float alpha = 1.0 - exp2(-c.a * units);
+    float depth = 0.6931471806 * c.a * units; // optical
+    // 1 - exp(-depth) without cancelling the digits of thin layers.
+    float alpha =
+        depth < 0.01 ? depth * (1.0 - depth * (0.5 - depth * 0.16666667)) : 1.0 - exp(-depth);
     fragColor = vec4(c.rgb * alpha, alpha);
 #endif
 }

@@ -11,6 +11,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -21,6 +22,13 @@ namespace bench {
 
 namespace {
 
+constexpr int TABLE_SIZE = 16384; // its error (nearest entry) does not show at any step here
+
+const char* const vertexShader = "#version 330\n"
+                                 "layout(location = 0) in vec3 position;\n"
+                                 "uniform mat4 toClip;\n"
+                                 "void main() { gl_Position = toClip * vec4(position, 1.0); }\n";
+
 std::string readText(const std::string& file)
 {
     std::ifstream in(file);
@@ -29,16 +37,28 @@ std::string readText(const std::string& file)
     return out.str();
 }
 
+// Table entries, or the sums of those before each.
+std::vector<glm::vec4> tableTexels(const core::TransferFunction& function, bool integral)
+{
+    std::vector<glm::vec4> texels = function.tabulateExtinction(TABLE_SIZE, 0.0, 1.0, false);
+    for (glm::vec4& t : texels)
+        t.a *= float(1.0 / std::log(2.0));
+    if (!integral) return texels;
+    std::vector<glm::vec4> sums{glm::vec4(0.0f)};
+    glm::dvec4 sum(0.0);
+    for (const glm::vec4& t : texels) {
+        sum += glm::dvec4(glm::dvec3(t) * double(t.a), t.a);
+        sums.emplace_back(sum);
+    }
+    return sums;
+}
+
 class BareRenderer : public Renderer
 {
 public:
-    explicit BareRenderer(const std::string& variant) : _variant(variant) {}
-    ~BareRenderer() override
-    {
-        if (_context) _context->release();
-    }
+    explicit BareRenderer(bool integral) : _integral(integral) {}
 
-    std::string name() const override { return _variant.empty() ? "bare march" : "bare: " + _variant; }
+    std::string name() const override { return _integral ? "bare march, integral" : "bare march"; }
     Status open(const ChartScene& scene) override;
     Status setStep(double stepVoxel) override
     {
@@ -49,13 +69,6 @@ public:
     support::FloatImage picture() override;
 
 private:
-    bool has(const char* word) const { return _variant.find(word) != std::string::npos; }
-    int number(const char* word, int otherwise) const
-    {
-        const auto at = _variant.find(word);
-        return at == std::string::npos ? otherwise
-                                       : std::atoi(_variant.c_str() + at + std::string(word).size());
-    }
     Status makeProgram();
     void makeVoxels(const ChartScene& scene);
     void makeTable(const ChartScene& scene);
@@ -64,264 +77,151 @@ private:
     void setRays(const ChartScene& scene);
     GLint uniform(const char* name) const { return glGetUniformLocation(_program, name); }
 
-    std::string _variant;
-    std::unique_ptr<support::OffscreenContext> _context;
-    GLuint _program = 0, _framebuffer = 0, _vertexArray = 0;
-    int _width = 0, _height = 0, _count = 0;
+    bool _integral;
+    std::unique_ptr<support::OffscreenContext> _context; // frees what was made in it
+    GLuint _program = 0;
+    int _width = 0, _height = 0;
+    GLsizei _vertexCount = 0;
     double _step = 1.0;
 };
 
 Status BareRenderer::makeProgram()
 {
-    std::string header = "#version 330\n";
-    std::istringstream words(_variant);
-    for (std::string w; words >> w;) {
-        const auto eq = w.find('=');
-        header += "#define " + (eq == std::string::npos ? w : w.substr(0, eq) + " " + w.substr(eq + 1)) + "\n";
-    }
-    const std::string vertex = "#version 330\nlayout(location = 0) in vec3 position;\n"
-                               "uniform mat4 toClip;\n"
-                               "void main() { gl_Position = toClip * vec4(position, 1.0); }\n";
     const std::string fragment =
-        header + readText(OSGVOLUMIZER_SOURCE_DIR "/tests/bench/chart/march.frag.glsl");
+        std::string("#version 330\n") + (_integral ? "#define INTEGRAL\n" : "") +
+        readText(OSGVOLUMIZER_SOURCE_DIR "/tests/bench/chart/march.frag.glsl");
     _program = glCreateProgram();
-    for (const auto& part : {std::make_pair(GL_VERTEX_SHADER, vertex), {GL_FRAGMENT_SHADER, fragment}}) {
-        const GLuint shader = glCreateShader(part.first);
-        const char* text = part.second.c_str();
-        glShaderSource(shader, 1, &text, nullptr);
+    const std::array<std::pair<GLenum, const char*>, 2> sources{
+        {{GL_VERTEX_SHADER, vertexShader}, {GL_FRAGMENT_SHADER, fragment.c_str()}}};
+    for (const auto& source : sources) {
+        const GLuint shader = glCreateShader(source.first);
+        glShaderSource(shader, 1, &source.second, nullptr);
         glCompileShader(shader);
-        char log[2000] = "";
-        glGetShaderInfoLog(shader, sizeof(log), nullptr, log);
-        if (log[0]) std::cerr << log;
         glAttachShader(_program, shader);
     }
     glLinkProgram(_program);
     GLint linked = 0;
     glGetProgramiv(_program, GL_LINK_STATUS, &linked);
-    if (!linked) return Status(ErrorCode::NOT_SUPPORTED, "the march does not compile");
+    if (!linked) return Status(ErrorCode::NOT_SUPPORTED, "march.frag.glsl does not compile here");
     glUseProgram(_program);
     return {};
 }
 
+// As 32-bit floats whatever their type: exact filter weights, and the fastest there is on llvmpipe.
 void BareRenderer::makeVoxels(const ChartScene& scene)
 {
+    std::vector<float> fractions;
+    for (double value : scene.values())
+        fractions.push_back(float((value - scene.range.x) / (scene.range.y - scene.range.x)));
     GLuint texture = 0;
     glGenTextures(1, &texture);
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_3D, texture);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     const glm::ivec3 n = scene.size;
-    const GLenum type = scene.type == VoxelType::UINT8    ? GL_UNSIGNED_BYTE
-                        : scene.type == VoxelType::UINT16 ? GL_UNSIGNED_SHORT
-                                                          : GL_FLOAT;
-    GLenum internalFormat = scene.type == VoxelType::UINT8    ? GL_R8
-                            : scene.type == VoxelType::UINT16 ? GL_R16
-                                                              : GL_R32F;
-    if (has("AS_R8")) internalFormat = GL_R8;
-    if (has("AS_R16 ")) internalFormat = GL_R16;
-    if (has("AS_R16F")) internalFormat = GL_R16F;
-    if (has("AS_R32F")) internalFormat = GL_R32F;
-    const double top = scene.type == VoxelType::FLOAT32 ? 1.0 : scene.range.y;
-    if (has("PACKED")) {
-        const std::vector<double> v = scene.values();
-        std::vector<float> packed;
-        const auto at = [&](int x, int y, int z) {
-            x = std::min(x, n.x - 1);
-            y = std::min(y, n.y - 1);
-            return float(v[std::size_t(x) + std::size_t(n.x) * (std::size_t(y) + std::size_t(n.y) * z)] / top);
-        };
-        for (int z = 0; z < n.z; ++z)
-            for (int y = 0; y < n.y; ++y)
-                for (int x = 0; x < n.x; ++x)
-                    for (int k = 0; k < 4; ++k) packed.push_back(at(x + (k & 1), y + (k >> 1), z));
-        glTexImage3D(GL_TEXTURE_3D, 0, has("PACKED16") ? GL_RGBA16F : GL_RGBA32F, n.x, n.y, n.z, 0, GL_RGBA, GL_FLOAT,
-                     packed.data());
-    } else {
-        glTexImage3D(GL_TEXTURE_3D, 0, internalFormat, n.x, n.y, n.z, 0, GL_RED, type,
-                     scene.voxels.data());
-    }
-    const GLint filter = has("FILTER_NEAREST") ? GL_NEAREST : GL_LINEAR;
-    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, filter);
-    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, filter);
-    const GLint wrap = has("REPEAT") ? GL_REPEAT : GL_CLAMP_TO_EDGE;
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_R32F, n.x, n.y, n.z, 0, GL_RED, GL_FLOAT, fractions.data());
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
     for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-        glTexParameteri(GL_TEXTURE_3D, axis, wrap);
+        glTexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
+    const glm::vec3 scale(1.0 / glm::dvec3(n)), offset((0.5 - scene.origin) / glm::dvec3(n));
     glUniform1i(uniform("voxels"), 0);
-    const glm::vec3 size(n);
-    glUniform3fv(uniform("textureScale"), 1, glm::value_ptr(1.0f / size));
-    const glm::vec3 offset = (0.5f - glm::vec3(scene.origin)) / size;
+    glUniform3fv(uniform("textureScale"), 1, glm::value_ptr(scale));
     glUniform3fv(uniform("textureOffset"), 1, glm::value_ptr(offset));
 }
 
 void BareRenderer::makeTable(const ChartScene& scene)
 {
-    const auto function = core::TransferFunction::create(scene.table);
-    const int count = number("TEXELS=", 4096);
-    std::vector<glm::vec4> texels = function->tabulateExtinction(count, 0.0, 1.0, false);
-    for (glm::vec4& t : texels) {
-        t.a *= float(1.0 / std::log(2.0));
-        if (has("PREMULTIPLIED")) {
-            t.a = 1.0f - std::exp2(-t.a * number("STEP=", 1));
-            t.r *= t.a, t.g *= t.a, t.b *= t.a;
-        }
-    }
-    const int avg = number("AVG2D=", 0);
-    if (avg || has("AVG1D")) {
-        const int m = 8, n = avg ? avg : count; // sub-samples per entry
-        // entry i stands for [i - 1/2, i + 1/2]/(n-1); prefix over sub-samples
-        std::vector<glm::dvec4> prefix(std::size_t(n) * m + 1);
-        const auto fn = *function;
-        for (int i = 0; i < n * m; ++i) {
-            const double v = ((i + 0.5) / m - (avg ? 0.5 : 0.5)) / (n - 1);
-            const glm::dvec4 c = fn.evaluate(std::min(std::max(v, 0.0), 1.0));
-            const double e = core::extinctionFromOpacity(c.a) / std::log(2.0);
-            prefix[std::size_t(i) + 1] = prefix[std::size_t(i)] + glm::dvec4(glm::dvec3(c) * e, e) / double(m);
-        }
-        texels.clear();
-        if (avg && has("FULL")) {
-            const double d = 1.0 / number("INVSTEP=", 1);
-            std::vector<glm::dvec4> f; // colour, extinction (natural) of fine values
-            for (int i = 0; i < n * m; ++i) {
-                const glm::dvec4 c = fn.evaluate(std::min(std::max(((i + 0.5) / m - 0.5) / (n - 1), 0.0), 1.0));
-                f.push_back(glm::dvec4(glm::dvec3(c), core::extinctionFromOpacity(c.a)));
-            }
-            for (int a = 0; a < n; ++a)
-                for (int b = 0; b < n; ++b) {
-                    // from a to b in fine steps
-                    const int k = std::max(1, std::abs(b - a)) * m;
-                    const int stride = std::max(1, k / 64);
-                    const int cnt = k / stride;
-                    double T = 1.0; glm::dvec3 C(0.0);
-                    const double h = d / cnt;
-                    for (int s2 = 0; s2 < cnt; ++s2) {
-                        const double x = a == b ? a + (s2 + 0.5) / cnt - 0.5 : a + (b - a) * (s2 + 0.5) / cnt;
-                        const glm::dvec4& c = f[std::size_t(std::min(std::max(int((x + 0.5) * m), 0), n * m - 1))];
-                        const double T1 = T * std::exp(-c.a * h);
-                        C += (T - T1) * glm::dvec3(c);
-                        T = T1;
-                    }
-                    texels.push_back(T < 1.0 ? glm::vec4(C / (1.0 - T), -std::log2(T) / d) : glm::vec4(0.0f));
-                }
-        } else if (avg) {
-            for (int a = 0; a < n; ++a)
-                for (int b = 0; b < n; ++b) {
-                    const int lo = std::min(a, b), hi = std::max(a, b);
-                    const glm::dvec4 s = lo == hi ? prefix[std::size_t(hi + 1) * m] - prefix[std::size_t(lo) * m] : (prefix[std::size_t(hi) * m + m / 2] - prefix[std::size_t(lo) * m + m / 2]) / double(hi - lo);
-                    texels.push_back(s.a > 0.0 ? glm::vec4(glm::dvec3(s) / s.a, s.a) : glm::vec4(0.0f));
-                }
-        } else {
-            for (int a = 0; a <= n; ++a) texels.push_back(glm::vec4(prefix[std::min(std::size_t(a) * m + m / 2, prefix.size() - 1)]));
-        }
-    }
-    GLuint texture = 0;
+    const std::vector<glm::vec4> texels =
+        tableTexels(*core::TransferFunction::create(scene.table), _integral);
+    GLuint buffer = 0, texture = 0;
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_TEXTURE_BUFFER, buffer);
+    glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(texels.size() * sizeof(texels[0])), texels.data(),
+                 GL_STATIC_DRAW);
     glGenTextures(1, &texture);
     glActiveTexture(GL_TEXTURE1);
-    const GLint format = has("HALF_TABLE") ? GL_RGBA16F : has("TABLE_RGBA8") ? GL_RGBA8 : has("TABLE_RGBA16U") ? GL_RGBA16 : GL_RGBA32F;
-    if (has("TABLE_1D")) {
-        glBindTexture(GL_TEXTURE_1D, texture);
-        glTexImage1D(GL_TEXTURE_1D, 0, format, count, 0, GL_RGBA, GL_FLOAT, texels.data());
-        glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-        glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-        glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    } else if ((has("TABLE_BUFFER") || has("AVG"))) {
-        GLuint buffer = 0;
-        glGenBuffers(1, &buffer);
-        glBindBuffer(GL_TEXTURE_BUFFER, buffer);
-        glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(texels.size() * sizeof(glm::vec4)), texels.data(), GL_STATIC_DRAW);
-        glBindTexture(GL_TEXTURE_BUFFER, texture);
-        glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer);
-        glUniform1i(uniform("tableBuffer"), 1);
-    } else if (has("TABLE_UBO")) {
-        GLuint buffer = 0;
-        glGenBuffers(1, &buffer);
-        glBindBufferBase(GL_UNIFORM_BUFFER, 0, buffer);
-        glBufferData(GL_UNIFORM_BUFFER, GLsizeiptr(texels.size() * sizeof(glm::vec4)), texels.data(), GL_STATIC_DRAW);
-        glUniformBlockBinding(_program, glGetUniformBlockIndex(_program, "Table"), 0);
-    } else {
-        glBindTexture(GL_TEXTURE_2D, texture);
-        glTexImage2D(GL_TEXTURE_2D, 0, format, count, 1, 0, GL_RGBA, GL_FLOAT, texels.data());
-        const GLint filter = has("TABLE_NEAREST") || has("TABLE_FILTER_NEAREST") ? GL_NEAREST : GL_LINEAR;
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    }
-    glUniform1i(uniform("lookupTable"), 1);
-    glUniform1i(uniform("lookupTable1D"), 1);
-    // Texels of normalised types are the fraction of the range.
-    glUniform2f(uniform("valueToTable"), float((count - 1.0) / count), float(0.5 / count));
-    glUniform4f(uniform("tableInfo"), float(count), float(count - 1), 0.5f, 0.0f);
-}
-
-void BareRenderer::makeBox(const ChartScene& scene)
-{
-    const glm::vec3 lo(scene.boxMin()), hi(scene.boxMax());
-    std::vector<glm::vec3> v;
-    for (int i = 0; i < 8; ++i)
-        v.emplace_back(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
-    const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    std::vector<glm::vec3> triangles;
-    for (const auto& f : faces)
-        for (int k : {0, 1, 2, 0, 2, 3}) triangles.push_back(v[std::size_t(f[k])]);
-    GLuint buffer = 0;
-    glGenVertexArrays(1, &_vertexArray);
-    glBindVertexArray(_vertexArray);
-    glGenBuffers(1, &buffer);
-    glBindBuffer(GL_ARRAY_BUFFER, buffer);
-    glBufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(glm::vec3)), triangles.data(), GL_STATIC_DRAW);
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
-    glEnableVertexAttribArray(0);
-    _count = int(triangles.size());
-    glUniform3fv(uniform("boxMin"), 1, glm::value_ptr(lo));
-    glUniform3fv(uniform("boxMax"), 1, glm::value_ptr(hi));
-    glEnable(GL_CULL_FACE);
-    glCullFace(GL_FRONT);
+    glBindTexture(GL_TEXTURE_BUFFER, texture);
+    glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer);
+    glUniform1i(uniform("table"), 1);
+    glUniform1f(uniform("lastEntry"), float(TABLE_SIZE - 1));
 }
 
 void BareRenderer::makeTarget()
 {
-    GLuint color = 0;
+    GLuint color = 0, framebuffer = 0;
     glGenTextures(1, &color);
     glActiveTexture(GL_TEXTURE2);
     glBindTexture(GL_TEXTURE_2D, color);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, _width, _height, 0, GL_RGBA, GL_FLOAT, nullptr);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glGenFramebuffers(1, &_framebuffer);
-    glBindFramebuffer(GL_FRAMEBUFFER, _framebuffer);
+    glGenFramebuffers(1, &framebuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color, 0);
     glViewport(0, 0, _width, _height);
 }
 
-// Origin and direction of rays as linear functions of (window x, y, 1).
+// The back faces of the box, so that each pixel is drawn once.
+void BareRenderer::makeBox(const ChartScene& scene)
+{
+    const glm::vec3 low(scene.boxMin()), high(scene.boxMax());
+    const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                             {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    std::vector<glm::vec3> triangles;
+    for (const auto& face : faces)
+        for (const int k : {0, 1, 2, 0, 2, 3}) {
+            const int i = face[k];
+            triangles.emplace_back(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y,
+                                   i & 4 ? high.z : low.z);
+        }
+    _vertexCount = GLsizei(triangles.size());
+    GLuint vertexArray = 0, buffer = 0;
+    glGenVertexArrays(1, &vertexArray);
+    glBindVertexArray(vertexArray);
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glBufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(glm::vec3)),
+                 triangles.data(), GL_STATIC_DRAW);
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glEnableVertexAttribArray(0);
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_FRONT);
+    glUniform3fv(uniform("boxMin"), 1, glm::value_ptr(low));
+    glUniform3fv(uniform("boxMax"), 1, glm::value_ptr(high));
+}
+
+// Origin and direction of rays as linear functions of (window x, y, 1): the eye and a point at
+// depth 1, or in orthographic views a point of the eye plane and the view axis.
 void BareRenderer::setRays(const ChartScene& scene)
 {
-    const glm::dmat4 toClip = support::toGlm(scene.view.projection) * support::toGlm(scene.view.view);
-    const glm::mat4 f(toClip);
-    glUniformMatrix4fv(uniform("toClip"), 1, GL_FALSE, glm::value_ptr(f));
-    const glm::dmat4 view = support::toGlm(scene.view.view), p = support::toGlm(scene.view.projection);
+    const glm::dmat4 view = support::toGlm(scene.view.view);
+    const glm::dmat4 projection = support::toGlm(scene.view.projection);
     const glm::dmat4 toWorld = glm::inverse(view);
-    const bool orthographic = p[2][3] == 0.0;
-    // Eye-frame position at depth 1 (perspective) or any depth, of ndc (x, y).
-    glm::dmat3 window(0.0), constant(0.0);
-    const glm::dvec2 pixel(2.0 / _width, 2.0 / _height);
-    const auto eyePoint = [&](double x, double y) {
-        const glm::dvec2 ndc(x * pixel.x - 1.0, y * pixel.y - 1.0);
-        if (orthographic)
-            return glm::dvec4((ndc.x - p[3][0]) / p[0][0], (ndc.y - p[3][1]) / p[1][1], 0.0, 1.0);
-        return glm::dvec4((ndc.x + p[2][0]) / p[0][0], (ndc.y + p[2][1]) / p[1][1], -1.0, 0.0);
+    const bool orthographic = projection[2][3] == 0.0;
+    const auto windowToWorld = [&](double x, double y) {
+        const glm::dvec2 ndc(2.0 * x / _width - 1.0, 2.0 * y / _height - 1.0);
+        const int column = orthographic ? 3 : 2; // of the projection, what moves the centre
+        const double sign = orthographic ? -1.0 : 1.0;
+        const double eyeX = (ndc.x + sign * projection[column][0]) / projection[0][0];
+        const double eyeY = (ndc.y + sign * projection[column][1]) / projection[1][1];
+        return glm::dvec3(toWorld * (orthographic ? glm::dvec4(eyeX, eyeY, 0.0, 1.0)
+                                                  : glm::dvec4(eyeX, eyeY, -1.0, 0.0)));
     };
-    const glm::dvec3 zero(toWorld * eyePoint(0, 0));
-    window[0] = glm::dvec3(toWorld * eyePoint(1, 0)) - zero;
-    window[1] = glm::dvec3(toWorld * eyePoint(0, 1)) - zero;
-    window[2] = zero;
-    constant[2] = glm::dvec3(toWorld * (orthographic ? glm::dvec4(0, 0, -1, 0) : glm::dvec4(0, 0, 0, 1)));
-    const glm::mat3 origin(orthographic ? window : constant), direction(orthographic ? constant : window);
+    const glm::dvec3 corner = windowToWorld(0.0, 0.0);
+    const glm::mat3 linear(windowToWorld(1.0, 0.0) - corner, windowToWorld(0.0, 1.0) - corner,
+                           corner);
+    glm::mat3 constant(0.0f);
+    constant[2] = glm::vec3(orthographic ? -toWorld[2] : toWorld[3]);
+    const glm::mat3& origin = orthographic ? linear : constant;
+    const glm::mat3& direction = orthographic ? constant : linear;
+    const glm::mat4 toClip(projection * view);
     glUniformMatrix3fv(uniform("rayOrigin"), 1, GL_FALSE, glm::value_ptr(origin));
     glUniformMatrix3fv(uniform("rayDirection"), 1, GL_FALSE, glm::value_ptr(direction));
+    glUniformMatrix4fv(uniform("toClip"), 1, GL_FALSE, glm::value_ptr(toClip));
 }
 
 Status BareRenderer::open(const ChartScene& scene)
 {
+    if (scene.shaded) return Status(ErrorCode::NOT_SUPPORTED, "has no shading");
     auto context = support::OffscreenContext::create();
     if (!context.ok()) return context.status;
     _context = std::move(*context);
@@ -345,7 +245,7 @@ void BareRenderer::frame()
     _context->makeCurrent();
     glClear(GL_COLOR_BUFFER_BIT);
     glUniform1f(uniform("stepLength"), float(_step));
-    glDrawArrays(GL_TRIANGLES, 0, _count);
+    glDrawArrays(GL_TRIANGLES, 0, _vertexCount);
     glFinish();
     _context->release();
 }
@@ -355,17 +255,16 @@ support::FloatImage BareRenderer::picture()
     _context->makeCurrent();
     support::FloatImage image(_width, _height);
     glReadPixels(0, 0, _width, _height, GL_RGBA, GL_FLOAT, image.pixels.data());
-    const GLenum error = glGetError();
-    if (error) std::cerr << name() << ": GL error " << error << "\n";
+    if (const GLenum error = glGetError()) std::cerr << name() << ": GL error " << error << "\n";
     _context->release();
     return image;
 }
 
 } // namespace
 
-RendererPtr makeBareRenderer(const std::string& variant)
+RendererPtr makeBareRenderer(bool integral)
 {
-    return std::make_unique<BareRenderer>(variant);
+    return std::make_unique<BareRenderer>(integral);
 }
 
 } // namespace bench

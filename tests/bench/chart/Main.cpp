@@ -18,8 +18,8 @@ namespace {
 
 const char* const usage = R"(Usage: osgVolumizerChart [options]
   --scenes A,B,..     default all
-  --renderers A,B,..  of slabs slices slabs:BRICK slices:BRICK bare fixed raytraced multipass vtkgpu
-                      vtkcpu; default the first two and everything after bare that was built
+  --renderers A,B,..  of slabs slices slabs:BRICK slices:BRICK bare bareintegral fixed raytraced
+                      multipass vtkgpu vtkcpu; default all that were built, bricks aside
   --steps A,B,..      sample distances in voxels, default 8,4,2,1,0.5,0.25
   --rounds N          default 5
   --csv FILE          writes the points
@@ -32,7 +32,7 @@ const char* const usage = R"(Usage: osgVolumizerChart [options]
 struct Arguments
 {
     std::vector<std::string> scenes;
-    std::vector<std::string> renderers{"slabs",     "slices",    "bare",   "fixed",
+    std::vector<std::string> renderers{"slabs",     "slices",    "bare",   "bareintegral", "fixed",
                                        "raytraced", "multipass", "vtkgpu", "vtkcpu"};
     MeasureOptions measure;
     std::string csv;
@@ -44,7 +44,8 @@ std::vector<std::string> split(const std::string& text)
 {
     std::vector<std::string> parts;
     std::istringstream in(text);
-    for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
+    for (std::string part; std::getline(in, part, ',');)
+        parts.push_back(part);
     return parts;
 }
 
@@ -74,7 +75,8 @@ bool parse(int argc, char** argv, Arguments& a)
             a.csv = value;
         else if (key == "--steps") {
             a.measure.steps.clear();
-            for (const auto& s : split(value)) a.measure.steps.push_back(std::atof(s.c_str()));
+            for (const auto& s : split(value))
+                a.measure.steps.push_back(std::atof(s.c_str()));
         } else
             return false;
     }
@@ -97,7 +99,8 @@ std::vector<RendererPtr> makeRenderers(const std::vector<std::string>& names)
 std::string joined(const std::vector<double>& values)
 {
     std::ostringstream out;
-    for (double v : values) out << (out.tellp() > 0 ? ";" : "") << v;
+    for (double v : values)
+        out << (out.tellp() > 0 ? ";" : "") << v;
     return out.str();
 }
 

@@ -20,7 +20,9 @@ double cpuMilliseconds()
 {
     rusage usage;
     getrusage(RUSAGE_SELF, &usage);
-    const auto ms = [](const timeval& t) { return 1e3 * double(t.tv_sec) + 1e-3 * double(t.tv_usec); };
+    const auto ms = [](const timeval& t) {
+        return 1e3 * double(t.tv_sec) + 1e-3 * double(t.tv_usec);
+    };
     return ms(usage.ru_utime) + ms(usage.ru_stime);
 }
 
@@ -28,8 +30,10 @@ double cpuMilliseconds()
 support::Difference compareOverBlack(support::FloatImage a, support::FloatImage b,
                                      const support::Mask& mask)
 {
-    for (glm::vec4& p : a.pixels) p.a = 0.0f;
-    for (glm::vec4& p : b.pixels) p.a = 0.0f;
+    for (glm::vec4& p : a.pixels)
+        p.a = 0.0f;
+    for (glm::vec4& p : b.pixels)
+        p.a = 0.0f;
     support::Difference d = support::compare(a, b, mask);
     d.rmse *= std::sqrt(4.0 / 3.0); // over three channels
     d.bias *= 4.0 / 3.0;
@@ -123,7 +127,8 @@ std::vector<Point> measure(const ChartScene& scene, const Reference& reference,
 std::vector<double> drawFrames(Renderer& renderer, int count)
 {
     std::vector<double> milliseconds;
-    for (int i = 0; i < count; ++i) milliseconds.push_back(timeFrame(renderer));
+    for (int i = 0; i < count; ++i)
+        milliseconds.push_back(timeFrame(renderer));
     return milliseconds;
 }
 

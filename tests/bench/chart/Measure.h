@@ -26,7 +26,8 @@ struct MeasureOptions
 /// Draws a scene with all renderers: one round after the other, in each every step, and for each
 /// step every renderer, so that whatever else the machine does falls on all alike.
 std::vector<Point> measure(const ChartScene& scene, const Reference& reference,
-                           const std::vector<RendererPtr>& renderers, const MeasureOptions& options);
+                           const std::vector<RendererPtr>& renderers,
+                           const MeasureOptions& options);
 
 /// Draws frames of one renderer, with nothing between them: for a profiler that is told to count
 /// inside of this function only. Returns the wall clock milliseconds of each.

@@ -80,11 +80,11 @@ private:
 
 Status OsgVolumeRenderer::open(const ChartScene& scene)
 {
-    if (scene.shaded && fixedFunction())
-        return Status(ErrorCode::NOT_SUPPORTED, "has no shading");
+    if (scene.shaded && fixedFunction()) return Status(ErrorCode::NOT_SUPPORTED, "has no shading");
     if (_technique == OsgVolumeTechnique::RAY_TRACED && scene.view.projection(3, 3) != 0.0)
-        return Status(ErrorCode::NOT_SUPPORTED,
-                      "casts perspective rays in orthographic views: its rays all start at the eye");
+        return Status(
+            ErrorCode::NOT_SUPPORTED,
+            "casts perspective rays in orthographic views: its rays all start at the eye");
     _scene = scene;
     const auto function = core::TransferFunction::create(scene.table);
     if (!function.ok()) return function.status;
@@ -145,7 +145,8 @@ osg::ref_ptr<osg::Image> OsgVolumeRenderer::classifiedImage(double stepVoxel) co
     for (double value : _scene.values()) {
         const double fraction = (value - _scene.range.x) / (_scene.range.y - _scene.range.x);
         const glm::vec4 c(colorOfStep(fraction, stepVoxel));
-        for (int k = 0; k < 4; ++k) *out++ = c[k];
+        for (int k = 0; k < 4; ++k)
+            *out++ = c[k];
     }
     return image;
 }
@@ -164,7 +165,8 @@ osg::ref_ptr<osg::TransferFunction1D> OsgVolumeRenderer::transferFunction(double
     float* out = reinterpret_cast<float*>(image->data());
     for (int i = 0; i < TABLE_SIZE; ++i) {
         const glm::vec4 c(colorOfStep(i / (TABLE_SIZE - 1.0), stepVoxel));
-        for (int k = 0; k < 4; ++k) *out++ = c[k];
+        for (int k = 0; k < 4; ++k)
+            *out++ = c[k];
     }
     return tf;
 }
@@ -192,7 +194,8 @@ osg::ref_ptr<osgVolume::VolumeTechnique> OsgVolumeRenderer::makeTechnique(double
 {
     if (_technique == OsgVolumeTechnique::RAY_TRACED) return new osgVolume::RayTracedTechnique;
     if (_technique == OsgVolumeTechnique::MULTIPASS) return new osgVolume::MultipassTechnique;
-    osg::ref_ptr<osgVolume::FixedFunctionTechnique> technique = new osgVolume::FixedFunctionTechnique;
+    osg::ref_ptr<osgVolume::FixedFunctionTechnique> technique =
+        new osgVolume::FixedFunctionTechnique;
     const double diagonal = glm::length(glm::dvec3(_scene.size));
     technique->setNumSlices(unsigned(std::lround(diagonal / stepVoxel)) + 1u);
     return technique;
@@ -201,11 +204,11 @@ osg::ref_ptr<osgVolume::VolumeTechnique> OsgVolumeRenderer::makeTechnique(double
 osg::ref_ptr<osg::Node> OsgVolumeRenderer::makeNode(double stepVoxel)
 {
     const glm::dvec3 texels = fixedFunction() ? glm::dvec3(_scene.size) : glm::dvec3(_side);
-    osg::ref_ptr<osgVolume::ImageLayer> layer =
-        new osgVolume::ImageLayer(fixedFunction() ? classifiedImage(stepVoxel).get() : _voxels.get());
+    osg::ref_ptr<osgVolume::ImageLayer> layer = new osgVolume::ImageLayer(
+        fixedFunction() ? classifiedImage(stepVoxel).get() : _voxels.get());
     // Images span whole texels, the volume the samples at their centres.
-    osg::ref_ptr<osgVolume::Locator> imageBox = new osgVolume::Locator(
-        boxMatrix(_scene.origin - 0.5, _scene.origin + texels - 0.5));
+    osg::ref_ptr<osgVolume::Locator> imageBox =
+        new osgVolume::Locator(boxMatrix(_scene.origin - 0.5, _scene.origin + texels - 0.5));
     osg::ref_ptr<osgVolume::Locator> sampleBox =
         new osgVolume::Locator(boxMatrix(_scene.boxMin(), _scene.boxMax()));
     layer->setLocator(imageBox);

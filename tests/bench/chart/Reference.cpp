@@ -21,9 +21,8 @@ oracle::Scene oracleScene(const ChartScene& scene)
 {
     const auto grid = std::make_shared<oracle::Grid>(scene.size, scene.values());
     oracle::Scene result;
-    result.volumes.push_back(oracle::voxelVolume(grid, scene.size,
-                                                 oracle::Table(scene.table, scene.range),
-                                                 glm::dvec3(1.0), scene.origin));
+    result.volumes.push_back(oracle::voxelVolume(
+        grid, scene.size, oracle::Table(scene.table, scene.range), glm::dvec3(1.0), scene.origin));
     result.tolerance = TOLERANCE;
     return result;
 }

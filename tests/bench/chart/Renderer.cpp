@@ -16,7 +16,8 @@ RendererPtr makeRenderer(const std::string& name)
     const std::string detail = colon < name.size() ? name.substr(colon + 1) : "";
     if (kind == "slabs" || kind == "slices")
         return makeLibraryRenderer(kind == "slabs", detail.empty() ? 0 : std::stoi(detail));
-    if (kind == "bare") return makeBareRenderer(detail);
+    if (kind == "bare") return makeBareRenderer();
+    if (kind == "bareintegral") return makeBareRenderer(true);
     if (kind == "fixed") return makeOsgVolumeRenderer(OsgVolumeTechnique::FIXED_FUNCTION);
     if (kind == "raytraced") return makeOsgVolumeRenderer(OsgVolumeTechnique::RAY_TRACED);
     if (kind == "multipass") return makeOsgVolumeRenderer(OsgVolumeTechnique::MULTIPASS);

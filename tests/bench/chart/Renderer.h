@@ -35,10 +35,16 @@ using RendererPtr = std::unique_ptr<Renderer>;
 /// for all scenes here.
 RendererPtr makeLibraryRenderer(bool slabs, int brickSize = 0);
 /// A fragment shader that marches through the box in one pass, without a scene graph: the
-/// practical limit. `defines` are lines of march.frag.glsl's options, see there.
-RendererPtr makeBareRenderer(const std::string& defines = "");
+/// practical limit. With the colour at the middle of each step, or (better for tables with sharp
+/// features) the mean of the table over the values that a step passes.
+RendererPtr makeBareRenderer(bool integral = false);
 
-enum class OsgVolumeTechnique { FIXED_FUNCTION, RAY_TRACED, MULTIPASS };
+enum class OsgVolumeTechnique
+{
+    FIXED_FUNCTION,
+    RAY_TRACED,
+    MULTIPASS
+};
 RendererPtr makeOsgVolumeRenderer(OsgVolumeTechnique technique);
 
 /// By the name of the command line; null for an unknown one.

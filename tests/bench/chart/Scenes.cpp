@@ -62,8 +62,11 @@ Points smoothTable(double opacity)
 Points peakTable()
 {
     const glm::dvec3 blue(0.2, 0.4, 0.9), gold(1.0, 0.8, 0.2);
-    return {{0.0, {blue, 0.0}},           {0.5, {blue, 0.0}}, {0.515625, {gold, 0.8}},
-            {0.53125, {blue, 0.0}}, {1.0, {blue, 0.0}}};
+    return {{0.0, {blue, 0.0}},
+            {0.5, {blue, 0.0}},
+            {0.515625, {gold, 0.8}},
+            {0.53125, {blue, 0.0}},
+            {1.0, {blue, 0.0}}};
 }
 
 // The same view of the 128^3 box for whatever part of it has voxels.
@@ -146,21 +149,22 @@ std::vector<std::pair<std::string, Maker>> makers()
     };
     const VoxelType f = VoxelType::FLOAT32;
     const Points smooth = smoothTable(0.06);
-    const std::vector<std::pair<std::string, std::function<ChartScene(const std::string&)>>> list = {
-        {"smooth", field("smooth table, float voxels fill the box", f, marschnerLobb, smooth)},
-        {"smooth-8bit",
-         field("the same, 8-bit voxels", VoxelType::UINT8, marschnerLobb, smooth)},
-        {"smooth-16bit",
-         field("the same, 16-bit voxels", VoxelType::UINT16, marschnerLobb, smooth)},
-        {"smooth-ortho", field("the same, orthographic", f, marschnerLobb, smooth, false)},
-        {"smooth-1024", field("the same, 1024 x 1024", f, marschnerLobb, smooth, true, 1024)},
-        {"blob", field("blob with empty borders", f, blob, smoothTable(0.3))},
-        {"blob-tight", [](const std::string&) { return tightBlob(); }},
-        {"peak", field("sharp peak in the table", f, marschnerLobb, peakTable())},
-        {"opaque", field("near-opaque", f, marschnerLobb, smoothTable(0.9))},
-        {"head", [](const std::string& name) { return head(name, false); }},
-        {"head-shaded", [](const std::string& name) { return head(name, true); }},
-    };
+    const std::vector<std::pair<std::string, std::function<ChartScene(const std::string&)>>> list =
+        {
+            {"smooth", field("smooth table, float voxels fill the box", f, marschnerLobb, smooth)},
+            {"smooth-8bit",
+             field("the same, 8-bit voxels", VoxelType::UINT8, marschnerLobb, smooth)},
+            {"smooth-16bit",
+             field("the same, 16-bit voxels", VoxelType::UINT16, marschnerLobb, smooth)},
+            {"smooth-ortho", field("the same, orthographic", f, marschnerLobb, smooth, false)},
+            {"smooth-1024", field("the same, 1024 x 1024", f, marschnerLobb, smooth, true, 1024)},
+            {"blob", field("blob with empty borders", f, blob, smoothTable(0.3))},
+            {"blob-tight", [](const std::string&) { return tightBlob(); }},
+            {"peak", field("sharp peak in the table", f, marschnerLobb, peakTable())},
+            {"opaque", field("near-opaque", f, marschnerLobb, smoothTable(0.9))},
+            {"head", [](const std::string& name) { return head(name, false); }},
+            {"head-shaded", [](const std::string& name) { return head(name, true); }},
+        };
     std::vector<std::pair<std::string, Maker>> result;
     for (const auto& entry : list)
         result.emplace_back(entry.first, [entry] { return entry.second(entry.first); });
@@ -179,8 +183,8 @@ std::vector<ChartScene> chartScenes(const std::vector<std::string>& filters)
 {
     std::vector<ChartScene> scenes;
     for (const auto& maker : makers()) {
-        const bool wanted = filters.empty() || std::find(filters.begin(), filters.end(),
-                                                         maker.first) != filters.end();
+        const bool wanted = filters.empty() ||
+                            std::find(filters.begin(), filters.end(), maker.first) != filters.end();
         if (!wanted) continue;
         ChartScene scene = maker.second();
         if (!scene.voxels.empty()) scenes.push_back(std::move(scene));

@@ -23,12 +23,12 @@ struct ChartScene
     glm::ivec3 size{0};
     glm::dvec3 origin{0.0}; ///< object position of sample (0,0,0)
     VoxelType type = VoxelType::FLOAT32;
-    std::vector<unsigned char> voxels; ///< x fastest, native byte order
-    glm::dvec2 range{0.0, 1.0};        ///< data values at the table's two ends
+    std::vector<unsigned char> voxels;                ///< x fastest, native byte order
+    glm::dvec2 range{0.0, 1.0};                       ///< data values at the table's two ends
     std::vector<core::TransferFunction::Point> table; ///< fraction of the range
     support::RenderOptions view;
-    bool shaded = false;   ///< by a head light, with normals from central differences
-    double ambient = 0.3;  ///< where shaded: colour * (ambient + diffuse * |normal . light|)
+    bool shaded = false;  ///< by a head light, with normals from central differences
+    double ambient = 0.3; ///< where shaded: colour * (ambient + diffuse * |normal . light|)
     double diffuse = 0.7;
 
     /// The box of the samples in the object frame.

@@ -157,13 +157,15 @@ void VtkRenderer::makeView(const ChartScene& scene)
     _renderer->AddLight(light);
 }
 
-// The window draws to a framebuffer of 8 bits, and copies that to the screen: here its colours get 32.
+// The window draws to a framebuffer of 8 bits, and copies that to the screen: here its colours
+// get 32.
 void VtkRenderer::makeFloatTarget()
 {
     _window->Render(); // makes the framebuffer
     auto* window = static_cast<vtkOpenGLRenderWindow*>(_window.Get());
     _texture->SetContext(window);
-    _texture->Create2D(unsigned(_scene.view.width), unsigned(_scene.view.height), 4, VTK_FLOAT, false);
+    _texture->Create2D(unsigned(_scene.view.width), unsigned(_scene.view.height), 4, VTK_FLOAT,
+                       false);
     window->GetState()->PushFramebufferBindings();
     window->GetRenderFramebuffer()->Bind();
     window->GetRenderFramebuffer()->AddColorAttachment(0, _texture);

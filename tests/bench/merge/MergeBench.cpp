@@ -1,5 +1,6 @@
-// What translucent geometry costs in and around a volume: time of a frame against that of the same scene with
-// the geometry hidden. Frames of both are interleaved, and medians compared, so that a busy machine slows both.
+// What translucent geometry costs in and around a volume: time of a frame against that of the same
+// scene with the geometry hidden. Frames of both are interleaved, and medians compared, so that a
+// busy machine slows both.
 //
 //   mergebench [frames] [name]
 
@@ -70,11 +71,10 @@ double median(std::vector<double> v)
 
 void run(const Bench& bench, int frames)
 {
-    osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(SIZE), [](const glm::dvec3& p) {
-        return bumps(0.4 * p);
-    });
-    const TwinVolume volume = makeTwin(voxels, {{0.0, {0.1, 0.2, 0.9, 0.002}},
-                                                {1.0, {1.0, 0.5, 0.1, 0.03}}});
+    osg::ref_ptr<Voxels> voxels =
+        makeVoxels(glm::ivec3(SIZE), [](const glm::dvec3& p) { return bumps(0.4 * p); });
+    const TwinVolume volume =
+        makeTwin(voxels, {{0.0, {0.1, 0.2, 0.9, 0.002}}, {1.0, {1.0, 0.5, 0.1, 0.03}}});
     osg::ref_ptr<osg::Group> scene = new osg::Group;
     scene->addChild(volume.node);
     scene->addChild(bench.surfaces);

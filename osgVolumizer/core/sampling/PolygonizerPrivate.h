@@ -1,0 +1,46 @@
+#pragma once
+
+#include "Polygonize.h"
+#include "Refine.h"
+#include "Slicer.h"
+#include "SurfaceFamily.h"
+
+#include <vector>
+
+namespace osgVolumizer {
+namespace core {
+
+/// What a Polygonizer keeps from view to view.
+struct Polygonizer::Private
+{
+    std::shared_ptr<const TetraSet> tetraSet;
+    Box3d bounds;
+    BoxIndex boxes; // as set
+    Executor* executor = nullptr;
+
+    TetraBlocks blocks; // of the tetra set, about an origin
+    BoxIndex localBoxes;
+    bool blocksCurrent = false, placesCurrent = false;
+
+    // One view.
+    TetraBlocks refinedBlocks;
+    Refiner refiner;
+    TetraSet refined;
+    std::vector<double> depths; // per vertex, where they are not those of planes
+    std::vector<double> surfaceDepths;
+    std::vector<int> order, rank; // surfaces far to near, and the inverse
+    SlicePlan plan;
+    Slicer slicer;
+    double nearest = 0.0, farthest = 0.0;
+
+    Status prepareBlocks(const glm::dvec3& origin);
+    void usePlanes(const ViewFamily& family, const glm::dvec3& origin);
+    Status useFunction(const Refiner::Function& depth, double tolerance, const glm::dvec3& origin);
+    Status measure();
+    Status cut(const SurfaceLattice& lattice, double eyeDepth, PolygonizedFaces& out);
+    Status cutPlane(const Plane& plane, const glm::dvec3& origin,
+                    const std::vector<std::vector<Plane>>* pieces, PolygonizedFaces& out);
+};
+
+} // namespace core
+} // namespace osgVolumizer

@@ -1,0 +1,62 @@
+#include "TiffDepth.h"
+
+#include <algorithm>
+
+namespace osgVolumizer {
+namespace io {
+
+namespace {
+
+constexpr std::uint64_t IMAGE_DEPTH = 32997;
+constexpr std::uint64_t MAXIMUM_ENTRIES = 4096; // of a directory
+
+/// Numbers of a file in its own byte order; 0 beyond its end.
+class Numbers
+{
+public:
+    Numbers(std::istream& file, bool bigEndian) : _file(file), _bigEndian(bigEndian) {}
+    std::uint64_t at(std::uint64_t offset, int bytes)
+    {
+        unsigned char b[8] = {};
+        _file.clear();
+        if (offset > (std::uint64_t(1) << 62)) return 0;
+        _file.seekg(static_cast<std::streamoff>(offset));
+        if (!_file.read(reinterpret_cast<char*>(b), bytes)) return 0;
+        if (!_bigEndian) std::reverse(b, b + bytes);
+        std::uint64_t number = 0;
+        for (int i = 0; i < bytes; ++i)
+            number = number << 8 | b[i];
+        return number;
+    }
+
+private:
+    std::istream& _file;
+    bool _bigEndian;
+};
+
+} // namespace
+
+std::uint64_t tiffImageDepth(std::istream& file)
+{
+    char order[2] = {};
+    file.clear();
+    file.seekg(0);
+    if (!file.read(order, 2) || order[0] != order[1] || (order[0] != 'I' && order[0] != 'M'))
+        return 1;
+    Numbers numbers(file, order[0] == 'M');
+    const std::uint64_t magic = numbers.at(2, 2);
+    if (magic != 42 && magic != 43) return 1;
+    const bool big = magic == 43;
+    const std::uint64_t directory = big ? numbers.at(8, 8) : numbers.at(4, 4);
+    const std::uint64_t entries = std::min(numbers.at(directory, big ? 8 : 2), MAXIMUM_ENTRIES);
+    for (std::uint64_t i = 0; i < entries; ++i) {
+        const std::uint64_t entry = directory + (big ? 8 + 20 * i : 2 + 12 * i);
+        if (numbers.at(entry, 2) != IMAGE_DEPTH) continue;
+        const bool isShort = numbers.at(entry + 2, 2) == 3;
+        return std::max<std::uint64_t>(1, numbers.at(entry + (big ? 12 : 8), isShort ? 2 : 4));
+    }
+    return 1;
+}
+
+} // namespace io
+} // namespace osgVolumizer

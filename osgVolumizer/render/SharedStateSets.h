@@ -1,0 +1,37 @@
+#pragma once
+
+#include <osg/StateSet>
+
+#include <cstdint>
+#include <functional>
+
+namespace osgVolumizer {
+namespace render {
+
+/// Keys of state sets that are not ProgramFeatures::key(), whose values stay below.
+enum class SharedState : std::uint64_t
+{
+    SORT = std::uint64_t(1) << 63,
+    FILL,
+    CLEAR,
+    ACCUMULATION
+};
+
+/// State sets that all volumes, views and contexts share, made when first asked for. Thread safe.
+osg::ref_ptr<osg::StateSet>
+sharedStateSet(std::uint64_t key, const std::function<osg::ref_ptr<osg::StateSet>()>& make);
+inline osg::ref_ptr<osg::StateSet>
+sharedStateSet(SharedState key, const std::function<osg::ref_ptr<osg::StateSet>()>& make)
+{
+    return sharedStateSet(static_cast<std::uint64_t>(key), make);
+}
+
+/// Releases what they have in one context, or in all for null: a later context of the same number
+/// has to link their programs again.
+void releaseSharedStateSets(osg::State* state);
+/// Makes room for more contexts before several of them draw at once: OSG's own growth on first use
+/// is not thread safe.
+void resizeSharedStateSets(unsigned int maximum);
+
+} // namespace render
+} // namespace osgVolumizer
