@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12, root or sudo), builds, and runs all tests: optimised, then
-# under the address and undefined-behaviour sanitizers, then the test of threads under the thread
-# sanitizer, then the fuzz targets for a few seconds each
+# under the address and undefined-behaviour sanitizers, then the fuzz targets for a few seconds each
 # where clang is there. Fails if anything fails, or if a test was skipped.
 set -u -o pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
@@ -56,7 +55,12 @@ install_missing $BUILD_PACKAGES libgtest-dev libgl1-mesa-dri openscenegraph xvfb
 
 run_suite release
 run_suite asan-ubsan
-run_suite tsan # the test of threads only
+presets="asan-ubsan release"
+# The test of threads under the thread sanitizer, on demand: TSAN=1 bash tests/run.sh
+if [ -n "${TSAN:-}" ]; then
+    run_suite tsan
+    presets="tsan $presets"
+fi
 if echo 'extern "C" int LLVMFuzzerTestOneInput(const char*, unsigned long) { return 0; }' |
     clang++ -x c++ -fsanitize=fuzzer,address - -o /dev/null 2>/dev/null; then
     run_fuzz
@@ -66,7 +70,7 @@ fi
 
 # The closing lines of ctest once more, so that they are the last thing on the screen.
 echo
-for preset in tsan asan-ubsan release; do
+for preset in $presets; do
     echo "$preset:"
     grep -E '^[0-9]+% tests passed' "build/logs/ctest-$preset.log"
 done
