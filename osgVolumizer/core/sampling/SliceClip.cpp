@@ -14,12 +14,16 @@ void append(const SlicePlan& plan, const RecordPolygon& face, std::size_t bin, d
             Slicer::Chunk& chunk)
 {
     const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
-    const std::size_t at = chunk.vertices.size();
-    chunk.vertices.resize(at + face.size() * stride);
-    float* to = chunk.vertices.data() + at;
-    for (std::size_t i = 0; i < face.size(); ++i)
+    // Grown in large steps and counted apart: resize() would fill every face with zeros first.
+    const std::size_t end = chunk.valueCount + face.size() * stride;
+    if (chunk.vertices.size() < end) chunk.vertices.resize(2 * end + 4096);
+    float* to = chunk.vertices.data() + chunk.valueCount;
+    for (std::size_t i = 0; i < face.size(); ++i) {
+        const double* from = face.record(i);
         for (std::size_t k = 0; k < stride; ++k)
-            *to++ = static_cast<float>(face.record(i)[k]);
+            *to++ = static_cast<float>(from[k]);
+    }
+    chunk.valueCount = end;
     chunk.bins.push_back(static_cast<std::uint32_t>(bin));
     chunk.sizes.push_back(static_cast<std::uint16_t>(face.size()));
     if (plan.primitive) chunk.spacings.push_back(static_cast<float>(spacing));

@@ -79,7 +79,8 @@ void Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& ou
 void Slicer::emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
 {
     const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
-    std::copy(chunk.vertices.begin(), chunk.vertices.end(),
+    std::copy(chunk.vertices.begin(),
+              chunk.vertices.begin() + static_cast<std::ptrdiff_t>(chunk.valueCount),
               out.faces.vertices.begin() +
                   static_cast<std::ptrdiff_t>(chunk.clippedVertex * stride));
     auto vertex = static_cast<std::uint32_t>(chunk.clippedVertex);

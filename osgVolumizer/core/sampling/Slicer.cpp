@@ -138,7 +138,7 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
     chunk.blockEntries.clear();
     chunk.bins.clear();
     chunk.sizes.clear();
-    chunk.vertices.clear();
+    chunk.valueCount = 0;
     chunk.spacings.clear();
     const TetraBlocks& blocks = *plan.blocks;
     const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
@@ -180,7 +180,7 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
     }
     for (std::size_t c = 0; c < chunkCount; ++c) {
         _chunks[c].clippedVertex = vertices;
-        vertices += _chunks[c].vertices.size() / stride;
+        vertices += _chunks[c].valueCount / stride;
     }
     if (indices > 0xffffffffu || vertices > 0xffffffffu) return false;
     out.faces.format = plan.blocks->format();

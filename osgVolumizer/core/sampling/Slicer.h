@@ -90,6 +90,7 @@ public:
         std::vector<std::uint32_t> bins;
         std::vector<std::uint16_t> sizes;
         std::vector<float> vertices;
+        std::size_t valueCount = 0; ///< of `vertices`
         std::vector<float> spacings;
         RecordPolygon whole, part, uncut;
         // Scratch of one block: its points (surface << 32 | near vertex << 8 | far vertex), and for
