@@ -131,8 +131,9 @@ std::unique_ptr<RandomScene> makeScene(unsigned seed)
     }
     const int surfaces = dice.upTo(4);
     for (int i = 0; i < surfaces; ++i) {
-        const glm::dvec4 color = dice.color(0.2, 0.9);
+        glm::dvec4 color = dice.color(0.2, 0.9);
         const bool opaque = dice.upTo(4) == 0;
+        if (opaque) color.a = 1.0; // what is not blended writes its alpha as it is
         if (dice.upTo(1) == 0) {
             const glm::vec3 a(dice.point(-3, 11)), b(dice.point(-3, 11)), c(dice.point(-3, 11));
             r->scene.addQuad({a, b, b + c - a, c}, color, opaque);
@@ -163,7 +164,7 @@ class MergeRandom : public support::GLTest
 {
 };
 
-TEST_F(MergeRandom, DISABLED_NoneIsOffByMoreThanItsBound)
+TEST_F(MergeRandom, NoneIsOffByMoreThanItsBound)
 {
     const char* only = std::getenv("OSGVOLUMIZER_SEED"); // one scene, to look at
     const unsigned first = only ? static_cast<unsigned>(std::atoi(only)) : 0;
