@@ -8,6 +8,8 @@
 #include <osg/Depth>
 #include <osg/Program>
 
+#include <atomic>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -39,6 +41,9 @@ std::string header(const ProgramFeatures& features)
     define(true, functions[features.rayFunction]);
     define(features.shading, "SHADING");
     define(features.gradientTexture, "GRADIENT_TEXTURE");
+    define(features.shortRuns, "SHORT_RUNS");
+    define(features.skipping, "SKIPPING");
+    define(features.countSamples, "COUNT_SAMPLES");
     define(features.smoothTable, "SMOOTH_TABLE");
     define(features.exact || features.nearest || features.cubic || features.before, "FETCH");
     text += "#define PLANES " + std::to_string(features.planeCount) + "\n";
@@ -55,11 +60,13 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
     std::string fragment = header(features);
     for (const std::string& file :
          {std::string("voxels.glsl"), std::string("transfer.glsl"), std::string("ray.glsl"),
-          std::string("shading.glsl"), kind + ".frag.glsl"})
+          std::string("shading.glsl"), std::string("skipping.glsl"), kind + ".frag.glsl"})
         fragment += shaderSource(file);
     result->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));
     return result;
 }
+
+std::atomic<bool> countsSamples{false};
 
 osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
 {
@@ -86,12 +93,23 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->addUniform(new osg::Uniform("layerDepth", int(UNIT_LAYER_DEPTH)));
     set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
     set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
+    set->addUniform(new osg::Uniform("cells", int(UNIT_CELLS)));
     set->setRenderBinDetails(10, "DepthSortedBin");
     set->setNestRenderBins(false);
     return set;
 }
 
 } // namespace
+
+void setSampleCounting(bool on)
+{
+    countsSamples = on;
+}
+
+bool sampleCounting()
+{
+    return countsSamples;
+}
 
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
 {

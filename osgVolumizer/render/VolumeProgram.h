@@ -26,10 +26,13 @@ struct ProgramFeatures
     bool nearest = false, cubic = false; ///< else linear
     bool before = false;                 ///< look samples up, then interpolate
     bool preIntegrated = false;          ///< look runs of values up
+    bool shortRuns = false;              ///< look short runs up as single values
     bool smoothTable = false;            ///< interpolate between entries
     VolumeAppearance::RayFunction rayFunction = VolumeAppearance::COMPOSITE;
     bool shading = false;
     bool gradientTexture = false; ///< brick textures hold gradients besides values
+    bool skipping = false;        ///< leap over cells that show nothing
+    bool countSamples = false;    ///< draw the number of samples: see setSampleCounting()
     int planeCount = 0;           ///< half-spaces that end the segment, besides the clip box
 
     /// Whether the rays' values are gathered in a target of their own, and drawn as one layer.
@@ -44,9 +47,11 @@ struct ProgramFeatures
     {
         std::uint64_t result =
             static_cast<std::uint64_t>(planeCount) << 3 | static_cast<std::uint64_t>(rayFunction);
-        for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth,
-                          layerDepth, ranked, spherical, exact, nearest, cubic, before,
-                          preIntegrated, smoothTable, shading, gradientTexture})
+        for (bool flag :
+             {slab,       voxelCoordinates, vertexColors, voxels,      rgba,    opaqueDepth,
+              layerDepth, ranked,           spherical,    exact,       nearest, cubic,
+              before,     preIntegrated,    shortRuns,    smoothTable, shading, gradientTexture,
+              skipping,   countSamples})
             result = result << 1 | std::uint64_t(flag);
         return result;
     }
@@ -61,6 +66,7 @@ enum TextureUnit : unsigned
     UNIT_LAYER_DEPTH,
     UNIT_SORTED_FAR, ///< the four farthest depths of a pixel's surfaces
     UNIT_SORTED_NEAR,
+    UNIT_CELLS,
     UNIT_FIRST_LAYER ///< and the following: captured depths
 };
 /// Vertex attributes.
@@ -73,6 +79,11 @@ enum Attribute : unsigned
     ATTRIBUTE_SPACING, ///< slices: thickness of the layer
     ATTRIBUTE_COUNT
 };
+
+/// Whether slabs draw how many samples they take, added up in the red channel of a float
+/// framebuffer, instead of colours: for tests and for tuning. Off by default.
+void setSampleCounting(bool on);
+bool sampleCounting();
 
 /// The state that a volume with these features is drawn with: program, blending, depth test without
 /// writes, transparent bin. Shared by all volumes, views and contexts. Thread safe.
