@@ -31,7 +31,10 @@ VolumeAppearance::VolumeAppearance()
 VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op)
     : osg::Group(o, op), _voxels(o._voxels), _lookupTable(o._lookupTable), _technique(o._technique),
       _interpolation(o._interpolation), _lookup(o._lookup), _exactFiltering(o._exactFiltering),
-      _sampling(o._sampling), _opacityUnit(o._opacityUnit),
+      _rayFunction(o._rayFunction), _isoValue(o._isoValue), _shading(o._shading),
+      _material(o._material), _gradients(o._gradients), _accumulationBits(o._accumulationBits),
+      _sampling(o._sampling), _errorTolerance(o._errorTolerance),
+      _targetFrameTime(o._targetFrameTime), _opacityUnit(o._opacityUnit),
       _tableTextures(new render::TableTextures)
 {
 }
@@ -50,7 +53,35 @@ void VolumeAppearance::setLookupTable(LookupTable* table)
 
 int VolumeAppearance::getRequiredOverlap() const
 {
-    return _interpolation == CUBIC ? 3 : 1;
+    return 1 + (_interpolation == CUBIC ? 2 : 0) + (_shading ? 2 : 0);
+}
+
+Status VolumeAppearance::setIsoValue(double dataValue)
+{
+    if (!std::isfinite(dataValue)) return refuse(*this, "iso-value", dataValue, "a finite number");
+    _isoValue = dataValue;
+    return {};
+}
+
+Status VolumeAppearance::setMaterial(const Material& material)
+{
+    const std::pair<const char*, double> values[] = {{"ambient coefficient", material.ambient},
+                                                     {"diffuse coefficient", material.diffuse},
+                                                     {"specular coefficient", material.specular},
+                                                     {"shininess", material.shininess}};
+    for (const auto& value : values)
+        if (!(value.second >= 0.0) || !std::isfinite(value.second))
+            return refuse(*this, value.first, value.second, "a number that is not negative");
+    _material = material;
+    return {};
+}
+
+Status VolumeAppearance::setAccumulationBits(int bits)
+{
+    if (bits != 8 && bits != 16 && bits != 32)
+        return refuse(*this, "accumulation bits", bits, "8, 16 or 32");
+    _accumulationBits = bits;
+    return {};
 }
 
 Status VolumeAppearance::setSamplingPeriod(const osg::Vec3d& periodVoxel)
@@ -72,6 +103,22 @@ Status VolumeAppearance::setMaximumSamples(int count)
 {
     if (count < 1) return refuse(*this, "maximum of samples", count, "at least 1");
     _sampling.maximumSamples = count;
+    return {};
+}
+
+Status VolumeAppearance::setErrorTolerance(double rootMeanSquare)
+{
+    if (!(rootMeanSquare >= 0.0) || !std::isfinite(rootMeanSquare))
+        return refuse(*this, "error tolerance", rootMeanSquare, "0 (off) or a positive number");
+    _errorTolerance = rootMeanSquare;
+    return {};
+}
+
+Status VolumeAppearance::setTargetFrameTime(double seconds)
+{
+    if (!(seconds >= 0.0) || !std::isfinite(seconds))
+        return refuse(*this, "target frame time", seconds, "0 (off) or a positive time");
+    _targetFrameTime = seconds;
     return {};
 }
 

@@ -1,11 +1,14 @@
 #include "BrickTextures.h"
 
+#include "../core/voxels/Half.h"
 #include "../core/voxels/VoxelData.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 
 namespace osgVolumizer {
 namespace render {
@@ -108,16 +111,67 @@ VoxelBlock texelsOf(const Voxels& voxels, const VoxelBlock& block, const TexelFo
     return {converted, converted->data(), converted->size()};
 }
 
-BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick)
+// Value and central differences, less at the last samples, of texels that are floats or unsigned
+// integers. Integers stay integers: values and half of differences, moved up, as 16 bits.
+template <class T, class Out>
+VoxelBlock withGradients(const VoxelBlock& block, const glm::ivec3& size)
+{
+    constexpr bool integer = std::is_integral<T>::value;
+    constexpr double unit = integer ? double(std::numeric_limits<T>::max()) : 1.0;
+    const auto* in = reinterpret_cast<const T*>(block.data);
+    auto texels = std::make_shared<std::vector<Out>>();
+    texels->reserve(4 * block.bytes / sizeof(T));
+    const std::int64_t stride[3] = {1, size.x, std::int64_t(size.x) * size.y};
+    const T* value = in;
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x, ++value) {
+                const int at[3] = {x, y, z};
+                for (int a = 0; a < 3; ++a) {
+                    const int low = at[a] > 0 ? 1 : 0, high = at[a] + 1 < size[a] ? 1 : 0;
+                    const double difference =
+                        (double(value[high * stride[a]]) - double(value[-low * stride[a]])) /
+                        std::max(low + high, 1);
+                    texels->push_back(static_cast<Out>(
+                        integer ? std::lround((0.5 * difference / unit + 0.5) * 65535.0)
+                                : difference));
+                }
+                texels->push_back(
+                    static_cast<Out>(integer ? double(*value) / unit * 65535.0 : double(*value)));
+            }
+    return {texels, reinterpret_cast<unsigned char*>(texels->data()), texels->size() * sizeof(Out)};
+}
+
+// Scalars of any type with their gradients, and the format that they then have.
+VoxelBlock withGradients(const VoxelBlock& block, const glm::ivec3& size, TexelFormat& format)
+{
+    switch (format.type) {
+    case VoxelType::UINT8:
+        format = {VoxelType::UINT16, GL_RGBA16, GL_UNSIGNED_SHORT, false};
+        return withGradients<std::uint8_t, std::uint16_t>(block, size);
+    case VoxelType::UINT16:
+        format = {VoxelType::UINT16, GL_RGBA16, GL_UNSIGNED_SHORT, false};
+        return withGradients<std::uint16_t, std::uint16_t>(block, size);
+    case VoxelType::HALF:
+        format = {VoxelType::FLOAT32, GL_RGBA32F_ARB, GL_FLOAT, false};
+        return withGradients<core::Half, float>(block, size);
+    default:
+        format = {VoxelType::FLOAT32, GL_RGBA32F_ARB, GL_FLOAT, format.fraction};
+        return withGradients<float, float>(block, size);
+    }
+}
+
+BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick, bool gradients)
 {
     VoxelBlock block = voxels.getBrick(brick);
     if (!block.data) return {};
-    const TexelFormat format = texelFormat(voxels.getType(), voxels.getComponents());
+    TexelFormat format = texelFormat(voxels.getType(), voxels.getComponents());
     block = texelsOf(voxels, block, format);
     const glm::ivec3 size = voxels.getLayout().brick(brick).samples.size();
+    if (gradients) block = withGradients(block, size, format);
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->setImage(size.x, size.y, size.z, static_cast<GLint>(format.internalFormat),
-                    voxels.getComponents() == 1 ? GL_RED : GL_RGBA, format.dataType,
+                    voxels.getComponents() == 1 && !gradients ? GL_RED : GL_RGBA, format.dataType,
                     const_cast<unsigned char*>(block.data), osg::Image::NO_DELETE, 1);
     image->setUserData(new BlockHolder(block.owner));
     osg::ref_ptr<osg::Texture3D> texture = new osg::Texture3D(image);
@@ -141,13 +195,13 @@ osg::ref_ptr<BrickTextures> BrickTextures::of(const Voxels& voxels)
     return static_cast<BrickTextures*>(data.get());
 }
 
-BrickTexture BrickTextures::get(const Voxels& voxels, std::int64_t brick)
+BrickTexture BrickTextures::get(const Voxels& voxels, std::int64_t brick, bool gradients)
 {
     const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
     std::lock_guard<std::mutex> lock(_mutex);
-    Entry& entry = _entries[brick];
+    Entry& entry = _entries[{brick, gradients}];
     if (!entry.brick.texture || entry.modifiedCount != modified || entry.layoutCount != layout)
-        entry = {makeTexture(voxels, brick), modified, layout};
+        entry = {makeTexture(voxels, brick, gradients), modified, layout};
     return entry.brick;
 }
 
@@ -204,6 +258,13 @@ glm::dvec2 texelToRangeFraction(const Voxels& voxels)
                                                            : 1.0;
     const double width = range.y() - range.x();
     return {unit / width, (signedOffset(voxels.getType()) - range.x()) / width};
+}
+
+glm::vec2 gradientDecode(const Voxels& voxels)
+{
+    const VoxelType type = texelFormat(voxels.getType(), 1).type;
+    const bool integer = type == VoxelType::UINT8 || type == VoxelType::UINT16;
+    return integer ? glm::vec2(2.0f, -1.0f) : glm::vec2(1.0f, 0.0f);
 }
 
 } // namespace render

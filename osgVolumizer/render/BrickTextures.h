@@ -8,6 +8,7 @@
 
 #include <map>
 #include <mutex>
+#include <utility>
 
 namespace osgVolumizer {
 namespace render {
@@ -27,8 +28,9 @@ public:
     /// The textures of these voxels, made on the first call.
     static osg::ref_ptr<BrickTextures> of(const Voxels& voxels);
 
-    /// Null where the source fails. Reads the brick unless it is resident.
-    BrickTexture get(const Voxels& voxels, std::int64_t brick);
+    /// Null where the source fails. Reads the brick unless it is resident. `gradients`: central
+    /// differences in red, green and blue, see gradientDecode(), and the value in alpha.
+    BrickTexture get(const Voxels& voxels, std::int64_t brick, bool gradients = false);
 
     void resizeGLObjectBuffers(unsigned int maximum) override;
     void releaseGLObjects(osg::State* state) const override;
@@ -41,7 +43,7 @@ private:
     };
 
     mutable std::mutex _mutex;
-    std::map<std::int64_t, Entry> _entries;
+    std::map<std::pair<std::int64_t, bool>, Entry> _entries; ///< with and without gradients
 };
 
 /// On devices that filter float textures both faster and more exactly than others (llvmpipe, whose
@@ -52,6 +54,8 @@ void chooseFormat(osg::State& state, osg::Texture3D& texture);
 
 /// Scale and offset from a texel, as the shader reads it, to the fraction of the voxels' range.
 glm::dvec2 texelToRangeFraction(const Voxels& voxels);
+/// Scale and offset from a texel of a texture with gradients to the difference of texels per voxel.
+glm::vec2 gradientDecode(const Voxels& voxels);
 
 } // namespace render
 } // namespace osgVolumizer

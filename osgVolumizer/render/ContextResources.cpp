@@ -22,8 +22,11 @@ std::map<unsigned, std::shared_ptr<ContextResources>>& registry()
     return resources;
 }
 
-void release(ContextResources& resources, unsigned contextId)
+void release(ContextResources& resources, osg::State& state)
 {
+    const unsigned contextId = state.getContextID();
+    for (const auto& program : resources.rays.programs)
+        program.second->releaseGLObjects(&state);
     // Without the extensions there never was a context to make anything in.
     osg::GLExtensions* gl = osg::GLExtensions::Get(contextId, false);
     if (gl) {
@@ -31,8 +34,9 @@ void release(ContextResources& resources, unsigned contextId)
         resources.indices.release(*gl);
         AccumulationBuffers& buffers = resources.accumulation;
         LayerBuffers& layers = buffers.layers;
-        for (GLuint* name : {&buffers.framebuffer, &buffers.layerFramebuffer,
-                             &layers.sortedFramebuffer, &layers.rankFramebuffer})
+        for (GLuint* name :
+             {&buffers.framebuffer, &buffers.layerFramebuffer, &layers.sortedFramebuffer,
+              &layers.rankFramebuffer, &resources.rays.framebuffer})
             if (*name) gl->glDeleteFramebuffers(1, name);
         if (layers.queries[0]) {
             gl->glDeleteFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
@@ -82,7 +86,7 @@ void releaseContextResources(osg::State* state)
     }
     const auto entry = registry().find(state->getContextID());
     if (entry == registry().end()) return;
-    release(*entry->second, state->getContextID());
+    release(*entry->second, *state);
     registry().erase(entry);
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <osg/GLExtensions>
+#include <osg/Program>
 #include <osg/State>
 #include <osg/Texture2D>
 
+#include <map>
 #include <memory>
+#include <utility>
 
 namespace osgVolumizer {
 namespace render {
@@ -44,6 +47,15 @@ struct AccumulationBuffers
     LayerBuffers layers;
 };
 
+/// Where values of rays are gathered. One a context, grown to the largest viewport seen.
+struct RayBuffers
+{
+    int width = 0, height = 0;
+    GLuint framebuffer = 0;
+    osg::ref_ptr<osg::Texture2D> color;
+    std::map<std::pair<int, bool>, osg::ref_ptr<osg::Program>> programs; ///< by ray function, rgba
+};
+
 /// What the renderer keeps per context, made when first needed.
 struct ContextResources
 {
@@ -53,6 +65,7 @@ struct ContextResources
     GetAttachmentParameter glGetFramebufferAttachmentParameteriv = nullptr; ///< not one of OSG's
     StreamBuffer vertices, indices;
     AccumulationBuffers accumulation;
+    RayBuffers rays;
 };
 
 /// The resources of the current context; call only while it is current.

@@ -85,6 +85,17 @@ void addAccumulation(Accumulation& accumulation, const osgUtil::RenderLeaf& besi
         {nearest, accumulationLeaf(accumulation, AccumulationLeaf::END, beside, viewport)});
 }
 
+// Tells lit volumes of the stage's lights.
+void light(const std::vector<VolumeInstance*>& volumes, osgUtil::RenderBin& bin)
+{
+    for (VolumeInstance* volume : volumes) {
+        if (!volume->look->features.shading || !bin.getStage()) continue;
+        auto look = std::make_shared<VolumeLook>(*volume->look);
+        look->lights = lightsOf(*bin.getStage());
+        volume->look = std::move(look);
+    }
+}
+
 } // namespace
 
 Merger* Merger::of(osgUtil::RenderBin& bin, osgUtil::CullVisitor& visitor)
@@ -108,7 +119,18 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
     if (bin->getRenderLeafList().empty()) bin->sortBackToFront();
     LeafList& leaves = bin->getRenderLeafList();
     const std::vector<VolumeInstance*> visible = visibleVolumes(leaves);
-    const MergeGroups groups = findMergeGroups(visible, leaves);
+    light(visible, *bin);
+    // Gathered rays are one layer, which nothing can be merged into.
+    std::vector<VolumeInstance*> merged = visible;
+    const auto gathering =
+        std::stable_partition(merged.begin(), merged.end(), [](const VolumeInstance* volume) {
+            return !volume->look->features.gathers();
+        });
+    const std::vector<VolumeInstance*> layers(gathering, merged.end());
+    merged.erase(gathering, merged.end());
+    MergeGroups groups = findMergeGroups(merged, leaves);
+    for (VolumeInstance* volume : layers)
+        groups.groups.push_back({{volume}, {}});
 
     std::unordered_set<const osgUtil::RenderLeaf*> replaced;
     for (const auto& volume : _volumes)
@@ -165,6 +187,9 @@ osg::ref_ptr<Accumulation> Merger::makeAccumulation() const
     settings.y = static_cast<int>(_viewport->y());
     settings.width = static_cast<int>(_viewport->width());
     settings.height = static_cast<int>(_viewport->height());
+    settings.bits = 8;
+    for (const auto& volume : _volumes)
+        settings.bits = std::max(settings.bits, volume->appearance->getAccumulationBits());
     return new Accumulation(settings);
 }
 

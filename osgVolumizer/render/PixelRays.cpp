@@ -51,7 +51,8 @@ Result<PixelRays> pixelRays(const glm::dmat4& toEye, const glm::dmat4& projectio
     // At z = -(reference + t): clip w = w0 + t w1, and A (x, y) = ndc w - B z - C.
     const double w0 = p[3][3] - p[2][3] * referenceDepth, w1 = -p[2][3];
     const glm::dvec2 b(p[2][0], p[2][1]), c(p[3][0], p[3][1]);
-    glm::dmat3 originEye(0.0);
+    glm::dmat3& originEye = rays.originEye;
+    originEye = glm::dmat3(0.0);
     originEye[0] = glm::dvec3(xy * glm::dvec2(pixel.x * w0, 0.0), 0.0);
     originEye[1] = glm::dvec3(xy * glm::dvec2(0.0, pixel.y * w0), 0.0);
     originEye[2] = glm::dvec3(xy * (ndc * w0 + b * referenceDepth - c), -referenceDepth);

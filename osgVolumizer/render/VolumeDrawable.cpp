@@ -5,66 +5,23 @@
 #include "ContextResources.h"
 #include "Matrices.h"
 #include "PixelRays.h"
+#include "RayTarget.h"
 #include "ScissorScope.h"
 #include "Statistics.h"
+#include "Uniforms.h"
 
 #include <osg/Program>
 
-#include <glm/gtc/type_ptr.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+
+#include <cmath>
+#include <optional>
 
 namespace osgVolumizer {
 namespace render {
 
 namespace {
-
-// Sets uniforms of the program that OSG applied last, without going through state sets.
-class Uniforms
-{
-public:
-    Uniforms(osg::GLExtensions& gl, const osg::Program::PerContextProgram& program)
-        : _gl(gl), _program(program)
-    {
-    }
-    void set(const char* name, float v) const { _gl.glUniform1f(location(name), v); }
-    void set(const char* name, int v) const { _gl.glUniform1i(location(name), v); }
-    void set(const char* name, const glm::vec2& v) const
-    {
-        _gl.glUniform2fv(location(name), 1, glm::value_ptr(v));
-    }
-    void set(const char* name, const glm::vec3& v) const
-    {
-        _gl.glUniform3fv(location(name), 1, glm::value_ptr(v));
-    }
-    void set(const char* name, const glm::vec4& v) const
-    {
-        _gl.glUniform4fv(location(name), 1, glm::value_ptr(v));
-    }
-    void set(const char* name, const glm::dmat3& v) const
-    {
-        const glm::mat3 m(v);
-        _gl.glUniformMatrix3fv(location(name), 1, GL_FALSE, glm::value_ptr(m));
-    }
-    void set(const char* name, const glm::dmat4& v) const
-    {
-        const glm::mat4 m(v);
-        _gl.glUniformMatrix4fv(location(name), 1, GL_FALSE, glm::value_ptr(m));
-    }
-    void set(const char* name, const std::vector<glm::vec4>& v) const
-    {
-        if (!v.empty())
-            _gl.glUniform4fv(location(name), static_cast<GLsizei>(v.size()), glm::value_ptr(v[0]));
-    }
-
-private:
-    GLint location(const char* name) const
-    {
-        return _program.getUniformLocation(osg::Uniform::getNameID(name));
-    }
-
-    osg::GLExtensions& _gl;
-    const osg::Program::PerContextProgram& _program;
-};
 
 glm::dvec4 viewportOf(osg::State& state)
 {
@@ -84,6 +41,46 @@ void setTable(const Uniforms& uniforms, const VolumeLook& look)
     uniforms.set("tableHigh", look.table.high);
 }
 
+// Normals are to be seen in the eye frame, and their length in ranges per opacity unit.
+glm::dmat3 gradientToEye(const VolumeLook& look, const glm::dmat3& frameToEye)
+{
+    const double unitsToEye =
+        std::cbrt(std::abs(glm::determinant(frameToEye) / glm::determinant(look.frameToUnits)));
+    return glm::inverse(glm::transpose(frameToEye)) * (unitsToEye * look.texelToFraction);
+}
+
+void setShading(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& rays,
+                const glm::dmat4& frameToEye, const osg::State& state)
+{
+    const std::vector<EyeLight> lights = enabledLights(look.lights, state);
+    std::vector<glm::vec4> positions, spots;
+    std::vector<glm::vec3> ambients, diffuses, speculars, attenuations;
+    std::vector<float> exponents;
+    for (const EyeLight& light : lights) {
+        positions.push_back(light.position);
+        spots.push_back(light.spot);
+        ambients.push_back(light.ambient);
+        diffuses.push_back(light.diffuse);
+        speculars.push_back(light.specular);
+        attenuations.push_back(light.attenuation);
+        exponents.push_back(light.spotExponent);
+    }
+    uniforms.set("lightCount", static_cast<int>(lights.size()));
+    uniforms.set("lightPosition", positions);
+    uniforms.set("lightSpot", spots);
+    uniforms.set("lightAmbient", ambients);
+    uniforms.set("lightDiffuse", diffuses);
+    uniforms.set("lightSpecular", speculars);
+    uniforms.set("lightAttenuation", attenuations);
+    uniforms.set("lightSpotExponent", exponents);
+    uniforms.set("material", look.material);
+    uniforms.set("gradientToEye", gradientToEye(look, glm::dmat3(frameToEye)));
+    uniforms.set("gradientDecode", look.gradientDecode);
+    uniforms.set("rayOriginEye", rays.originEye);
+    uniforms.set("rayDirectionEye", rays.directionEye);
+    if (!look.features.slab) uniforms.set("frameToEye", frameToEye);
+}
+
 void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& rays)
 {
     uniforms.set("windowCenter", glm::vec2(rays.windowCenter));
@@ -99,6 +96,7 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
         uniforms.set("regionMin", look.regionMin);
         uniforms.set("regionMax", look.regionMax);
         uniforms.set("planes", look.planes);
+        uniforms.set("isoTexel", look.isoTexel);
     } else {
         uniforms.set("surfaceNormal", glm::vec3(look.surfaceNormal));
         if (look.features.spherical) uniforms.set("rayDirectionEye", rays.directionEye);
@@ -225,9 +223,14 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     const Uniforms uniforms(gl, *program);
     uniforms.set("frameToClip", projection * toEye);
     setLook(uniforms, *_look, *rays);
+    if (_look->features.shading) setShading(uniforms, *_look, *rays, toEye, state);
     if (_look->features.opaqueDepth)
         setDepthTextures(state, uniforms, *rays, _look->features, resources->accumulation);
     if (_look->table.texture) state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
+    // Gathered values hide nothing, so they need no order, and no parts.
+    std::optional<RayTarget> target;
+    if (_look->features.gathers())
+        target.emplace(state, *resources, _look->features, glm::ivec4(viewportOf(state)));
     {
         const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
         const auto drawBatches = [&]() {
@@ -242,6 +245,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
                 if (scissor.set(rectangle)) drawBatches();
         }
     }
+    if (target) target->resolve(*_look);
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
     // OSG compares attributes by address: make it bind its own again whatever ours were.

@@ -34,6 +34,11 @@ std::string header(const ProgramFeatures& features)
     define(features.cubic, "CUBIC");
     define(features.before, "BEFORE");
     define(features.preIntegrated, "PREINTEGRATED");
+    static const char* const functions[] = {"COMPOSITE", "MAXIMUM", "MINIMUM",
+                                            "AVERAGE",   "SUM",     "ISOSURFACE"};
+    define(true, functions[features.rayFunction]);
+    define(features.shading, "SHADING");
+    define(features.gradientTexture, "GRADIENT_TEXTURE");
     define(features.smoothTable, "SMOOTH_TABLE");
     define(features.exact || features.nearest || features.cubic || features.before, "FETCH");
     text += "#define PLANES " + std::to_string(features.planeCount) + "\n";
@@ -48,8 +53,9 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
     result->addShader(
         new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource(kind + ".vert.glsl")));
     std::string fragment = header(features);
-    for (const std::string& file : {std::string("voxels.glsl"), std::string("transfer.glsl"),
-                                    std::string("ray.glsl"), kind + ".frag.glsl"})
+    for (const std::string& file :
+         {std::string("voxels.glsl"), std::string("transfer.glsl"), std::string("ray.glsl"),
+          std::string("shading.glsl"), kind + ".frag.glsl"})
         fragment += shaderSource(file);
     result->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));
     return result;
@@ -90,6 +96,17 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
 {
     return sharedStateSet(features.key(), [&features]() { return makeStateSet(features); });
+}
+
+osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features)
+{
+    osg::ref_ptr<osg::Program> result = new osg::Program;
+    result->setName("osgVolumizer resolve");
+    result->addShader(
+        new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource("resolve.vert.glsl")));
+    result->addShader(new osg::Shader(osg::Shader::FRAGMENT,
+                                      header(features) + shaderSource("resolve.frag.glsl")));
+    return result;
 }
 
 } // namespace render

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "../VolumeAppearance.h"
+
+#include <osg/Program>
 #include <osg/StateSet>
 
 #include <cstdint>
@@ -24,15 +27,26 @@ struct ProgramFeatures
     bool before = false;                 ///< look samples up, then interpolate
     bool preIntegrated = false;          ///< look runs of values up
     bool smoothTable = false;            ///< interpolate between entries
-    int planeCount = 0;                  ///< half-spaces that end the segment, besides the clip box
+    VolumeAppearance::RayFunction rayFunction = VolumeAppearance::COMPOSITE;
+    bool shading = false;
+    bool gradientTexture = false; ///< brick textures hold gradients besides values
+    int planeCount = 0;           ///< half-spaces that end the segment, besides the clip box
+
+    /// Whether the rays' values are gathered in a target of their own, and drawn as one layer.
+    bool gathers() const
+    {
+        return rayFunction != VolumeAppearance::COMPOSITE &&
+               rayFunction != VolumeAppearance::ISOSURFACE;
+    }
 
     /// Different for different features.
     std::uint64_t key() const
     {
-        std::uint64_t result = static_cast<std::uint64_t>(planeCount);
-        for (bool flag :
-             {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth, layerDepth, ranked,
-              spherical, exact, nearest, cubic, before, preIntegrated, smoothTable})
+        std::uint64_t result =
+            static_cast<std::uint64_t>(planeCount) << 3 | static_cast<std::uint64_t>(rayFunction);
+        for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth,
+                          layerDepth, ranked, spherical, exact, nearest, cubic, before,
+                          preIntegrated, smoothTable, shading, gradientTexture})
             result = result << 1 | std::uint64_t(flag);
         return result;
     }
@@ -63,6 +77,8 @@ enum Attribute : unsigned
 /// The state that a volume with these features is drawn with: program, blending, depth test without
 /// writes, transparent bin. Shared by all volumes, views and contexts. Thread safe.
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features);
+/// Draws the layer of a volume that gathers(); depends on ray function and rgba only.
+osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features);
 
 } // namespace render
 } // namespace osgVolumizer

@@ -45,6 +45,8 @@ bool cross(const Ray& ray, const Camera& camera, const Volume& volume, Crossing&
     crossing.leave = leave;
     crossing.fieldOrigin = glm::dvec3(volume.objectToField * glm::dvec4(origin, 1.0));
     crossing.fieldDirection = glm::dvec3(volume.objectToField * glm::dvec4(direction, 0.0));
+    crossing.eyeOrigin = ray.origin;
+    crossing.eyeDirection = ray.direction;
     crossing.objectLength = glm::length(direction);
     return true;
 }

@@ -24,6 +24,8 @@ struct Crossing
     double leave = 0.0;
     glm::dvec3 fieldOrigin; ///< the ray in the field frame
     glm::dvec3 fieldDirection;
+    glm::dvec3 eyeOrigin; ///< the ray in the eye frame
+    glm::dvec3 eyeDirection;
     double objectLength = 0.0; ///< object units per unit of depth
 };
 

@@ -74,7 +74,9 @@ Medium mediumOf(const Crossing& c, double depth)
     const glm::dvec4 color = c.volume->table.color(value);
     Medium m;
     m.extinction = Table::extinction(color.a) * c.objectLength / c.volume->unit;
-    m.emission = m.extinction * glm::dvec3(color);
+    glm::dvec3 rgb(color);
+    if (c.volume->shade) rgb = c.volume->shade(rgb, place, c.eyeOrigin + depth * c.eyeDirection);
+    m.emission = m.extinction * rgb;
     return m;
 }
 

@@ -91,7 +91,134 @@ float stepsOf(float tNear, float tFar)
     return clamp(floor((tFar - tNear) / stepDepth + 0.5), 1.0, maximumSteps);
 }
 
-#ifdef PREINTEGRATED
+#ifdef SHADING
+// The colour that the scene's lights make of a classified one.
+vec4 lit(vec4 c, vec3 origin, vec3 direction, float t)
+{
+    if (!(c.a > 0.0)) return c;
+    vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
+    vec3 directionEye = rayDirectionEye * window;
+    return vec4(shade(c.rgb, origin + t * direction, rayOriginEye * window + t * directionEye,
+                      -normalize(directionEye)),
+                c.a);
+}
+#endif
+
+#if defined(MAXIMUM) || defined(MINIMUM)
+#ifdef MAXIMUM
+#define BETTER(a, b) max(a, b)
+#else
+#define BETTER(a, b) min(a, b)
+#endif
+
+#ifdef RGBA
+// Highest or lowest premultiplied components on the brick's part of the segment, ends included.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    tNear = max(tNear, brick.x);
+    tFar = min(tFar, brick.y);
+    float count = stepsOf(tNear, tFar);
+    vec3 p = origin + direction * tNear, dp = direction * ((tFar - tNear) / count);
+    vec4 texel = voxelAt(p);
+    vec4 best = vec4(texel.rgb * texel.a, texel.a);
+    for (float i = 1.0; i <= count; i += 1.0) {
+        texel = voxelAt(p + i * dp);
+        best = BETTER(best, vec4(texel.rgb * texel.a, texel.a));
+    }
+    return best;
+}
+#else
+// Highest or lowest value on the brick's part of the segment, ends included. Between samples the extreme is looked for about the best
+// one, by halving: an interpolant has kinks, which would make plain sampling first order.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    tNear = max(tNear, brick.x);
+    tFar = min(tFar, brick.y);
+    float count = stepsOf(tNear, tFar);
+    vec3 p = origin + direction * tNear, dp = direction * ((tFar - tNear) / count);
+    float best = voxelAt(p), at = 0.0;
+    for (float i = 1.0; i <= count; i += 1.0) {
+        float value = voxelAt(p + i * dp);
+        if (BETTER(value, best) != best) at = i;
+        best = BETTER(value, best);
+    }
+    float reach = 0.5;
+    for (int i = 0; i < 5; ++i) {
+        float before = max(at - reach, 0.0), after = min(at + reach, count);
+        float low = voxelAt(p + before * dp), high = voxelAt(p + after * dp);
+        float better = BETTER(low, high);
+        if (BETTER(better, best) != best) at = better == low ? before : after;
+        best = BETTER(better, best);
+        reach *= 0.5;
+    }
+    return vec4(best);
+}
+#endif
+
+#elif defined(AVERAGE) || defined(SUM)
+// Integral of the value over the brick's steps, and of 1.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    float count = stepsOf(tNear, tFar);
+    float dt = (tFar - tNear) / count;
+    float first = max(0.0, ceil((brick.x - tNear) / dt - 0.5));
+    float last = min(count, ceil((brick.y - tNear) / dt - 0.5));
+    vec3 p = origin + direction * (tNear + 0.5 * dt), dp = direction * dt;
+    float sum = 0.0;
+    for (float i = first; i < last; i += 1.0) sum += voxelAt(p + i * dp);
+    float stepUnits = dt * length(frameToUnits * direction);
+    return vec4(sum * stepUnits, max(last - first, 0.0) * stepUnits, 0.0, 0.0);
+}
+
+#elif defined(ISOSURFACE)
+uniform float isoTexel;
+
+float overIso(vec3 p) { return voxelAt(p) - isoTexel; }
+
+// Root between t0 and t1, where the function has other signs: false position, Illinois variant (Dowell and
+// Jarratt, "A modified regula falsi method", BIT 11, 1971).
+float rootBetween(vec3 origin, vec3 direction, float t0, float f0, float t1, float f1)
+{
+    for (int i = 0; i < 8 && f1 != 0.0; ++i) {
+        float t = t1 - f1 * (t1 - t0) / (f1 - f0);
+        float f = overIso(origin + direction * t);
+        if (f * f1 < 0.0) {
+            t0 = t1;
+            f0 = f1;
+        } else {
+            f0 *= 0.5;
+        }
+        t1 = t;
+        f1 = f;
+    }
+    return t1;
+}
+
+// The first crossing of the iso-value, opaque.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    tNear = max(tNear, brick.x);
+    tFar = min(tFar, brick.y);
+    float count = stepsOf(tNear, tFar);
+    float dt = (tFar - tNear) / count;
+    float before = overIso(origin + direction * tNear);
+    for (float i = 1.0; i <= count; i += 1.0) {
+        float t = tNear + i * dt;
+        float after = overIso(origin + direction * t);
+        if ((before < 0.0) != (after < 0.0)) {
+            t = rootBetween(origin, direction, t - dt, before, t, after);
+            vec3 color = classifyTexel(isoTexel).rgb;
+#ifdef SHADING
+            color = lit(vec4(color, 1.0), origin, direction, t).rgb;
+#endif
+            return vec4(color, 1.0);
+        }
+        before = after;
+    }
+    return vec4(0.0);
+}
+
+#elif defined(PREINTEGRATED)
 // Light of the part of [tNear, tFar] in the brick, front to back: premultiplied colour, opacity. The ends of
 // steps are where the table is asked, so steps are cut at the brick's ends.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
@@ -110,6 +237,9 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
         float nextEntry = tableEntry(origin + next * direction);
         vec4 nextIntegral = tableIntegral(nextEntry);
         vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
+#ifdef SHADING
+        c = lit(c, origin, direction, 0.5 * (t + next));
+#endif
         float through = exp2(-c.a * (next - t) * unitsPerDepth);
         color += transmittance * (1.0 - through) * c.rgb;
         transmittance *= through;
@@ -121,6 +251,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     return vec4(color, 1.0 - transmittance);
 }
 #else
+// Light of the brick's steps, front to back: premultiplied colour, opacity.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
     float count = stepsOf(tNear, tFar);
@@ -134,6 +265,9 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     float transmittance = 1.0;
     for (float i = first; i < last; i += 1.0) {
         vec4 c = classify(p + i * dp);
+#ifdef SHADING
+        c = lit(c, origin, direction, tNear + (i + 0.5) * dt);
+#endif
         float through = exp2(-c.a * stepUnits);
         color += transmittance * (1.0 - through) * c.rgb;
         transmittance *= through;

@@ -8,7 +8,9 @@ out vec4 fragColor;
 
 flat in float spacing;
 uniform vec3 surfaceNormal; // spacing is counted along it (frame units); planes
-#ifdef SPHERICAL
+#ifdef SHADING
+in vec3 eyePosition;
+#elif defined(SPHERICAL)
 uniform mat3 rayDirectionEye;
 #endif
 
@@ -22,6 +24,17 @@ void main()
     // A ray along the planes would see an infinitely thick layer: it sees no plane either.
     float layer = spacing / max(abs(dot(surfaceNormal, direction)), 1e-12);
 #endif
+    float units = layer * length(frameToUnits * direction);
+#if defined(MAXIMUM) || defined(MINIMUM)
+#ifdef RGBA
+    vec4 texel = voxelAt(voxelCoordinate);
+    fragColor = vec4(texel.rgb * texel.a, texel.a);
+#else
+    fragColor = vec4(voxelAt(voxelCoordinate));
+#endif
+#elif defined(AVERAGE) || defined(SUM)
+    fragColor = vec4(voxelAt(voxelCoordinate) * units, units, 0.0, 0.0);
+#else
 #ifdef PREINTEGRATED
     // The layer's own ends; one frame unit of the ray is `direction`.
     vec3 halfLayer = 0.5 * layer * direction;
@@ -38,9 +51,14 @@ void main()
     c = vec4(vertexColor.rgb, -log2(max(1.0 - vertexColor.a, 5.9604645e-8)));
 #endif
 #endif
-    float depth = 0.6931471806 * c.a * layer * length(frameToUnits * direction); // optical
+#ifdef SHADING
+    vec3 directionEye = rayDirectionEye * vec3(gl_FragCoord.xy - windowCenter, 1.0);
+    c.rgb = shade(c.rgb, voxelCoordinate, eyePosition, -normalize(directionEye));
+#endif
+    float depth = 0.6931471806 * c.a * units; // optical
     // 1 - exp(-depth) without cancelling the digits of thin layers.
     float alpha =
         depth < 0.01 ? depth * (1.0 - depth * (0.5 - depth * 0.16666667)) : 1.0 - exp(-depth);
     fragColor = vec4(c.rgb * alpha, alpha);
+#endif
 }

@@ -10,6 +10,10 @@ layout(location = 4) in float spacingIn;
 out vec3 voxelCoordinate;
 flat out float spacing; // between surfaces
 uniform mat4 frameToClip;
+#ifdef SHADING
+uniform mat4 frameToEye;
+out vec3 eyePosition;
+#endif
 
 void main()
 {
@@ -22,5 +26,8 @@ void main()
     vertexColor = colorIn;
 #endif
     spacing = spacingIn;
+#ifdef SHADING
+    eyePosition = (frameToEye * vec4(position, 1.0)).xyz;
+#endif
     gl_Position = frameToClip * vec4(position, 1.0);
 }

@@ -10,7 +10,11 @@ uniform vec3 textureOffset;
 #define CHANNELS(t) (t)
 #else
 #define TEXEL float
+#ifdef GRADIENT_TEXTURE
+#define CHANNELS(t) (t).a
+#else
 #define CHANNELS(t) (t).r
+#endif
 #endif
 
 #ifdef FETCH

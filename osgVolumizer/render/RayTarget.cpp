@@ -1,0 +1,135 @@
+#include "RayTarget.h"
+
+#include "ContextResources.h"
+#include "Uniforms.h"
+
+#include <osg/BlendEquation>
+#include <osg/BlendFunc>
+
+#include <algorithm>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+constexpr unsigned UNIT_RAYS = UNIT_VOXELS;
+
+void setEnabled(GLenum mode, GLboolean on)
+{
+    if (on)
+        glEnable(mode);
+    else
+        glDisable(mode);
+}
+
+} // namespace
+
+RayTarget::RayTarget(osg::State& state, ContextResources& resources,
+                     const ProgramFeatures& features, const glm::ivec4& viewport)
+    : _state(state), _gl(*state.get<osg::GLExtensions>()), _resources(resources),
+      _features(features), _viewport(viewport),
+      _program(state.getLastAppliedAttribute(osg::StateAttribute::PROGRAM)),
+      _blend(glIsEnabled(GL_BLEND)), _depthTest(glIsEnabled(GL_DEPTH_TEST))
+{
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING_EXT, &_drawFramebuffer);
+    glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING_EXT, &_readFramebuffer);
+    glGetIntegerv(GL_BLEND_EQUATION_RGB, &_equation[0]);
+    glGetIntegerv(GL_BLEND_EQUATION_ALPHA, &_equation[1]);
+    const GLenum names[] = {GL_BLEND_SRC_RGB, GL_BLEND_DST_RGB, GL_BLEND_SRC_ALPHA,
+                            GL_BLEND_DST_ALPHA};
+    for (int i = 0; i < 4; ++i)
+        glGetIntegerv(names[i], &_function[i]);
+
+    ensureTarget();
+    _gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, _resources.rays.framebuffer);
+    const bool sums = _features.rayFunction == VolumeAppearance::AVERAGE ||
+                      _features.rayFunction == VolumeAppearance::SUM;
+    const bool highest = _features.rayFunction == VolumeAppearance::MAXIMUM;
+    const float empty = sums ? 0.0f : highest ? -3e38f : 3e38f;
+    GLfloat clearColor[4];
+    glGetFloatv(GL_COLOR_CLEAR_VALUE, clearColor);
+    const GLboolean scissor = glIsEnabled(GL_SCISSOR_TEST);
+    glDisable(GL_SCISSOR_TEST);
+    glClearColor(empty, empty, empty, empty);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glClearColor(clearColor[0], clearColor[1], clearColor[2], clearColor[3]);
+    setEnabled(GL_SCISSOR_TEST, scissor);
+    glEnable(GL_BLEND);
+    _gl.glBlendEquation(sums ? GL_FUNC_ADD : highest ? GL_MAX : GL_MIN);
+    glBlendFunc(GL_ONE, GL_ONE);
+}
+
+void RayTarget::ensureTarget()
+{
+    RayBuffers& rays = _resources.rays;
+    const int width = _viewport.x + _viewport.z, height = _viewport.y + _viewport.w;
+    if (rays.color && rays.width >= width && rays.height >= height) return;
+    rays.width = std::max(width, rays.width);
+    rays.height = std::max(height, rays.height);
+    rays.color = new osg::Texture2D;
+    rays.color->setTextureSize(rays.width, rays.height);
+    rays.color->setInternalFormat(GL_RGBA32F_ARB);
+    rays.color->setSourceFormat(GL_RGBA);
+    rays.color->setSourceType(GL_FLOAT);
+    rays.color->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+    rays.color->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
+    rays.color->setResizeNonPowerOfTwoHint(false);
+    rays.color->setDataVariance(osg::Object::STATIC);
+    _state.setActiveTextureUnit(UNIT_RAYS);
+    rays.color->apply(_state);
+    _state.haveAppliedTextureAttribute(UNIT_RAYS, osg::StateAttribute::TEXTURE);
+    if (!rays.framebuffer) _gl.glGenFramebuffers(1, &rays.framebuffer);
+    _gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, rays.framebuffer);
+    _gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D,
+                               rays.color->getTextureObject(_state.getContextID())->id(), 0);
+}
+
+void RayTarget::resolve(const VolumeLook& look)
+{
+    _gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
+    _gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_readFramebuffer));
+    _gl.glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    glDisable(GL_DEPTH_TEST); // rays ended at the opaque scene already
+    osg::ref_ptr<osg::Program>& resolving =
+        _resources.rays.programs[{_features.rayFunction, _features.rgba}];
+    if (!resolving) resolving = makeResolveProgram(_features);
+    _state.applyAttribute(resolving.get());
+    const auto* program = _state.getLastAppliedProgramObject();
+    if (!program) return;
+    const Uniforms uniforms(_gl, *program);
+    uniforms.set("rays", int(UNIT_RAYS));
+    _state.applyTextureAttribute(UNIT_RAYS, _resources.rays.color.get());
+    if (!_features.rgba) {
+        uniforms.set("lookupTable", int(UNIT_TABLE));
+        uniforms.set("valueToEntry", look.valueToEntry);
+        uniforms.set("lastEntry", static_cast<float>(look.table.count - 1));
+        _state.applyTextureAttribute(UNIT_TABLE, look.table.texture.get());
+    }
+    static const float triangle[] = {-1.0f, -1.0f, 3.0f, -1.0f, -1.0f, 3.0f};
+    _resources.vertices.stream(_gl, GL_ARRAY_BUFFER_ARB, triangle, sizeof(triangle));
+    _gl.glEnableVertexAttribArray(ATTRIBUTE_POSITION);
+    _gl.glVertexAttribPointer(ATTRIBUTE_POSITION, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    _gl.glDisableVertexAttribArray(ATTRIBUTE_POSITION);
+    _gl.glBindBuffer(GL_ARRAY_BUFFER_ARB, 0);
+    _state.unbindVertexBufferObject();
+}
+
+RayTarget::~RayTarget()
+{
+    _gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
+    _gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_readFramebuffer));
+    _gl.glBlendEquationSeparate(static_cast<GLenum>(_equation[0]),
+                                static_cast<GLenum>(_equation[1]));
+    _gl.glBlendFuncSeparate(static_cast<GLenum>(_function[0]), static_cast<GLenum>(_function[1]),
+                            static_cast<GLenum>(_function[2]), static_cast<GLenum>(_function[3]));
+    setEnabled(GL_BLEND, _blend);
+    setEnabled(GL_DEPTH_TEST, _depthTest);
+    // The next leaf may share our state set, and then finds nothing to apply.
+    if (_program) _state.applyAttribute(_program);
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "VolumeDrawable.h"
+
+#include <osg/RenderInfo>
+
+namespace osgVolumizer {
+namespace render {
+
+struct ContextResources;
+
+/// Gathers what all bricks of a volume leave of each pixel's ray, in 32-bit floats, in any order:
+/// the highest or lowest value, or sums. From construction on drawing is redirected; resolve()
+/// looks the values up and draws them as one layer over what was there before. Then everything is
+/// as it was found. To be used in the draw thread, within one drawable.
+class RayTarget
+{
+public:
+    RayTarget(osg::State& state, ContextResources& resources, const ProgramFeatures& features,
+              const glm::ivec4& viewport);
+    ~RayTarget();
+    RayTarget(const RayTarget&) = delete;
+    RayTarget& operator=(const RayTarget&) = delete;
+
+    void resolve(const VolumeLook& look);
+
+private:
+    void ensureTarget();
+
+    osg::State& _state;
+    osg::GLExtensions& _gl;
+    ContextResources& _resources;
+    const ProgramFeatures& _features;
+    glm::ivec4 _viewport;
+    const osg::StateAttribute* _program;
+    GLint _drawFramebuffer = 0, _readFramebuffer = 0;
+    GLint _equation[2] = {}, _function[4] = {};
+    GLboolean _blend, _depthTest;
+};
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,34 @@
+// One layer from what all bricks left of a pixel's ray: looked up, drawn over what is behind.
+
+uniform sampler2D rays; // values, or premultiplied colours
+out vec4 fragColor;
+#ifndef RGBA
+uniform samplerBuffer lookupTable;
+uniform vec2 valueToEntry;
+uniform float lastEntry;
+#endif
+
+void main()
+{
+    vec4 ray = texelFetch(rays, ivec2(gl_FragCoord.xy), 0);
+    if (!(abs(ray.x) < 1e37)) discard; // nothing drawn
+#ifdef RGBA
+    fragColor = ray;
+#else
+#if defined(AVERAGE) || defined(SUM)
+    if (!(ray.y > 0.0)) discard;
+#endif
+#if defined(SUM)
+    float entry = ray.x * valueToEntry.x + ray.y * valueToEntry.y;
+#elif defined(AVERAGE)
+    float entry = ray.x / ray.y * valueToEntry.x + valueToEntry.y;
+#else
+    float entry = ray.x * valueToEntry.x + valueToEntry.y;
+#endif
+    float held = clamp(entry, 0.0, lastEntry);
+    int low = int(held);
+    vec4 c = mix(texelFetch(lookupTable, low), texelFetch(lookupTable, low + 1), fract(held));
+    float alpha = 1.0 - exp2(-c.a);
+    fragColor = vec4(c.rgb * alpha, alpha);
+#endif
+}

@@ -1,0 +1,72 @@
+// Light from the scene on a point of the volume: Blinn-Phong, two-sided, in the eye frame (Blinn, "Models of
+// light reflection for computer synthesized pictures", SIGGRAPH 1977).
+
+#ifdef SHADING
+#define MAXIMUM_LIGHTS 8
+uniform int lightCount;
+uniform vec4 lightPosition[MAXIMUM_LIGHTS]; // eye frame; w = 0: the direction to it
+uniform vec3 lightAmbient[MAXIMUM_LIGHTS], lightDiffuse[MAXIMUM_LIGHTS], lightSpecular[MAXIMUM_LIGHTS];
+uniform vec3 lightAttenuation[MAXIMUM_LIGHTS]; // constant, linear, quadratic, per eye unit
+uniform vec4 lightSpot[MAXIMUM_LIGHTS];        // direction it shines to, cosine of its cone; -1: none
+uniform float lightSpotExponent[MAXIMUM_LIGHTS];
+uniform vec4 material; // ambient, diffuse, specular, shininess
+uniform mat3 gradientToEye; // texels per voxel -> normal in the eye frame, in ranges per opacity unit
+uniform mat3 rayOriginEye, rayDirectionEye; // times (dx, dy, 1)
+
+#ifdef GRADIENT_TEXTURE
+uniform vec2 gradientDecode; // scale, offset
+
+vec3 gradientAt(vec3 voxelCoordinate)
+{
+    vec3 g = textureLod(voxels, voxelCoordinate * textureScale + textureOffset, 0.0).rgb;
+    return g * gradientDecode.x + gradientDecode.y;
+}
+#else
+float scalarAt(vec3 voxelCoordinate)
+{
+#ifdef RGBA
+    return voxelAt(voxelCoordinate).a;
+#else
+    return voxelAt(voxelCoordinate);
+#endif
+}
+
+// Central differences over one sample to each side, less at the last samples.
+vec3 gradientAt(vec3 voxelCoordinate)
+{
+    vec3 first = round(0.5 - textureOffset * vec3(textureSize(voxels, 0)));
+    vec3 low = max(voxelCoordinate - 1.0, first);
+    vec3 high = min(voxelCoordinate + 1.0, first + vec3(textureSize(voxels, 0) - 1));
+    vec3 p = voxelCoordinate;
+    return vec3(scalarAt(vec3(high.x, p.yz)) - scalarAt(vec3(low.x, p.yz)),
+                scalarAt(vec3(p.x, high.y, p.z)) - scalarAt(vec3(p.x, low.y, p.z)),
+                scalarAt(vec3(p.xy, high.z)) - scalarAt(vec3(p.xy, low.z))) /
+           max(high - low, 1e-6);
+}
+#endif
+
+vec3 shade(vec3 color, vec3 voxelCoordinate, vec3 eye, vec3 toEye)
+{
+    vec3 n = gradientToEye * gradientAt(voxelCoordinate);
+    // No direction where nothing varies, without a jump to it.
+    n *= inversesqrt(dot(n, n) + 1e-8);
+    vec3 diffuse = vec3(material.x), specular = vec3(0.0);
+    for (int i = 0; i < lightCount; ++i) {
+        vec3 l = lightPosition[i].xyz - lightPosition[i].w * eye;
+        float distance = length(l);
+        l /= max(distance, 1e-30);
+        float strength = 1.0;
+        if (lightPosition[i].w != 0.0)
+            strength /= dot(lightAttenuation[i], vec3(1.0, distance, distance * distance));
+        float spot = dot(-l, lightSpot[i].xyz);
+        if (lightSpot[i].w > -1.0)
+            strength *= spot < lightSpot[i].w ? 0.0 : pow(max(spot, 0.0), lightSpotExponent[i]);
+        vec3 h = l + toEye;
+        h *= inversesqrt(max(dot(h, h), 1e-30));
+        diffuse += strength * (lightAmbient[i] + material.y * abs(dot(n, l)) * lightDiffuse[i]);
+        float highlight = pow(max(abs(dot(n, h)), 1e-30), material.w);
+        specular += strength * material.z * highlight * lightSpecular[i];
+    }
+    return color * diffuse + specular;
+}
+#endif

@@ -1,0 +1,332 @@
+// Light on volumes, against Blinn-Phong in double precision on the exact gradient rule.
+
+#include "Volumes.h"
+
+#include <osgVolumizer/Error.h>
+
+#include <osg/LightSource>
+#include <osg/MatrixTransform>
+
+#include <oracles/Projection.h>
+#include <oracles/Ray.h>
+#include <support/GLTest.h>
+
+#include <cmath>
+
+using namespace osgVolumizer;
+using namespace osgVolumizer::test;
+using support::FloatImage;
+using support::RenderOptions;
+
+namespace {
+
+using Shading = support::GLTest;
+
+constexpr int SIZE = 21;
+const Points TABLE{{0.0, {0.1, 0.8, 0.4, 0.02}}, {1.0, {1.0, 0.3, 0.4, 0.4}}};
+
+RenderOptions view(bool perspective = true)
+{
+    RenderOptions options;
+    options.size(72, 64);
+    if (perspective)
+        options.perspective(40.0);
+    else
+        options.orthographic(18.0);
+    return options.lookAt({40, -38, 32}, {10, 10, 10}, {0, 0, 1});
+}
+
+// A light in the world frame, for OSG and for the oracle.
+struct TestLight
+{
+    glm::dvec4 position{0, 0, 0, 1};
+    glm::dvec3 color{1.0}, ambient{0.0};
+    glm::dvec3 attenuation{1.0, 0.0, 0.0};
+    glm::dvec3 direction{0, 0, -1};
+    double cutoffDegrees = 180.0, exponent = 0.0;
+};
+
+osg::ref_ptr<osg::LightSource> makeSource(const TestLight& light, int number, osg::StateSet& lit)
+{
+    osg::ref_ptr<osg::Light> l = new osg::Light(number);
+    l->setPosition(
+        osg::Vec4(light.position.x, light.position.y, light.position.z, light.position.w));
+    l->setDirection(osg::Vec3(light.direction.x, light.direction.y, light.direction.z));
+    l->setAmbient(osg::Vec4(light.ambient.r, light.ambient.g, light.ambient.b, 1));
+    l->setDiffuse(osg::Vec4(light.color.r, light.color.g, light.color.b, 1));
+    l->setSpecular(osg::Vec4(light.color.r, light.color.g, light.color.b, 1));
+    l->setConstantAttenuation(light.attenuation.x);
+    l->setLinearAttenuation(light.attenuation.y);
+    l->setQuadraticAttenuation(light.attenuation.z);
+    l->setSpotCutoff(light.cutoffDegrees);
+    l->setSpotExponent(light.exponent);
+    osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
+    source->setLight(l);
+    source->setStateSetModes(lit, osg::StateAttribute::ON);
+    return source;
+}
+
+// Central differences as documented, less at the last samples; in field units.
+glm::dvec3 gradientOf(const oracle::Grid& grid, const glm::dvec3& p)
+{
+    glm::dvec3 g;
+    for (int a = 0; a < 3; ++a) {
+        glm::dvec3 low = p, high = p;
+        low[a] = std::max(p[a] - 1.0, 0.0);
+        high[a] = std::min(p[a] + 1.0, double(grid.size()[a] - 1));
+        g[a] = (grid.value(high) - grid.value(low)) / (high[a] - low[a]);
+    }
+    return g;
+}
+
+// The documented formula, in the eye frame.
+glm::dvec3 lit(const glm::dvec3& color, const glm::dvec3& n, const glm::dvec3& eye,
+               const glm::dvec3& toEye, const std::vector<TestLight>& lights,
+               const glm::dmat4& view, const VolumeAppearance::Material& m)
+{
+    glm::dvec3 diffuse(m.ambient), specular(0.0);
+    for (const TestLight& light : lights) {
+        const glm::dvec4 position = view * light.position;
+        glm::dvec3 l = glm::dvec3(position) - position.w * eye;
+        const double d = glm::length(l);
+        l /= d;
+        double strength = 1.0;
+        if (position.w != 0.0) strength /= glm::dot(light.attenuation, glm::dvec3(1.0, d, d * d));
+        if (light.cutoffDegrees < 180.0) {
+            const glm::dvec3 axis =
+                glm::normalize(glm::dvec3(view * glm::dvec4(light.direction, 0.0)));
+            const double cosine = glm::dot(-l, axis);
+            strength *= cosine < std::cos(light.cutoffDegrees * M_PI / 180.0)
+                            ? 0.0
+                            : std::pow(std::max(cosine, 0.0), light.exponent);
+        }
+        diffuse += strength * (light.ambient + m.diffuse * std::abs(glm::dot(n, l)) * light.color);
+        const glm::dvec3 h = glm::normalize(l + toEye);
+        specular +=
+            strength * m.specular * std::pow(std::abs(glm::dot(n, h)), m.shininess) * light.color;
+    }
+    return color * diffuse + specular;
+}
+
+// Makes the oracle's volume shade like that. `objectToEye` may be any affine map.
+void light(oracle::Volume& volume, std::shared_ptr<oracle::Grid> grid,
+           const std::vector<TestLight>& lights, const RenderOptions& options,
+           const VolumeAppearance::Material& material)
+{
+    const glm::dmat4 view = support::toGlm(options.view);
+    const glm::dmat3 toEye(view * volume.objectToWorld * glm::inverse(volume.objectToField));
+    const glm::dmat3 normalToEye = glm::inverse(glm::transpose(toEye));
+    const bool perspective = options.projection(3, 3) == 0.0;
+    volume.shade = [=](const glm::dvec3& color, const glm::dvec3& field, const glm::dvec3& eye) {
+        const glm::dvec3 g = normalToEye * gradientOf(*grid, field);
+        const double length = glm::length(g);
+        const glm::dvec3 n = length > 0.0 ? g / length : g;
+        const glm::dvec3 toViewer = perspective ? -glm::normalize(eye) : glm::dvec3(0, 0, 1);
+        return lit(color, n, eye, toViewer, lights, view, material);
+    };
+}
+
+std::vector<TestLight> someLights()
+{
+    TestLight point, sun, spot;
+    point.position = {60, 10, 50, 1};
+    point.attenuation = {0.5, 0.01, 0.0002};
+    point.ambient = {0.05, 0.0, 0.1};
+    sun.position = {-0.6, -0.5, 0.8, 0};
+    sun.color = {0.2, 0.5, 0.9};
+    spot.position = {10, -40, 10, 1};
+    spot.direction = {0.1, 1, 0.05};
+    spot.cutoffDegrees = 60.0; // all of the volume: its edge is not smooth
+    spot.exponent = 4.0;
+    spot.color = {0.9, 0.8, 0.1};
+    return {point, sun, spot};
+}
+
+TEST_F(Shading, SeveralLightsInPerspectiveAndOrthographicViews)
+{
+    osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(SIZE), bumps);
+    const std::vector<TestLight> lights = someLights();
+    for (const bool perspective : {true, false})
+        for (const auto technique : {VolumeAppearance::SLABS, VolumeAppearance::SLICES}) {
+            const RenderOptions options = view(perspective);
+            TwinVolume twin = makeTwin(voxels, TABLE, technique);
+            twin.node->setShading(true);
+            light(twin.oracle, gridOf(*voxels), lights, options, twin.node->getMaterial());
+            osg::ref_ptr<osg::Group> scene = new osg::Group;
+            for (std::size_t i = 0; i < lights.size(); ++i)
+                scene->addChild(makeSource(lights[i], int(i) + 2, *scene->getOrCreateStateSet()));
+            scene->addChild(twin.node);
+            oracle::Scene expectedScene = oracleScene(twin.oracle);
+            expectedScene.tolerance = 1e-7;
+            const FloatImage expected = oraclePicture(expectedScene, options);
+            const support::Mask inside = awayFromSilhouettes(expectedScene, options);
+            twin.setPeriod(0.25);
+            const FloatImage image = support::renderScene(scene, options);
+            const double rmse = support::compare(image, expected, inside).rmse;
+            if (technique == VolumeAppearance::SLABS)
+                support::savePicture(image, perspective ? "lit" : "lit_orthographic");
+            EXPECT_LT(rmse, technique == VolumeAppearance::SLABS ? 2e-4 : 5e-3);
+        }
+}
+
+TEST_F(Shading, NormalsFollowAnyAffineTransform)
+{
+    osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(SIZE), bumps);
+    voxels->setSpacing(osg::Vec3d(1.0, 0.5, 2.0));
+    const std::vector<TestLight> lights = someLights();
+    const RenderOptions options = view();
+    TwinVolume twin = makeTwin(voxels, TABLE);
+    twin.node->setShading(true);
+    osg::Matrixd matrix(0.9, 0.3, 0.0, 0.0, -0.5, 1.4, 0.2, 0.0, 0.1, 0.0, -0.45, 0.0, 2.0, 1.0,
+                        20.0,
+                        1.0); // mirrored, sheared
+    osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(matrix);
+    transform->addChild(twin.node);
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        scene->addChild(makeSource(lights[i], int(i), *scene->getOrCreateStateSet()));
+    scene->addChild(transform);
+    twin.oracle.objectToWorld = support::toGlm(matrix);
+    light(twin.oracle, gridOf(*voxels), lights, options, twin.node->getMaterial());
+    oracle::Scene expectedScene = oracleScene(twin.oracle);
+    expectedScene.tolerance = 1e-7;
+    const FloatImage expected = oraclePicture(expectedScene, options);
+    twin.setPeriod(0.25);
+    const FloatImage image = support::renderScene(scene, options);
+    EXPECT_LT(support::compare(image, expected, awayFromSilhouettes(expectedScene, options)).rmse,
+              3e-4);
+}
+
+TEST_F(Shading, PrecomputedGradientsShowTheSame)
+{
+    // One-sided differences at the border blend a little differently.
+    for (const auto type : {VoxelType::FLOAT32, VoxelType::UINT8}) {
+        VoxelSource::Description description;
+        description.size = glm::ivec3(SIZE);
+        description.type = type;
+        std::vector<double> values;
+        for (int z = 0; z < SIZE; ++z)
+            for (int y = 0; y < SIZE; ++y)
+                for (int x = 0; x < SIZE; ++x)
+                    values.push_back(bumps(glm::dvec3(x, y, z)) *
+                                     (type == VoxelType::UINT8 ? 255 : 1));
+        const auto bytes = oracle::fromDoubles(values, type);
+        osg::ref_ptr<MemoryVoxelSource> source = new MemoryVoxelSource;
+        source->allocate(description);
+        std::copy(bytes.begin(), bytes.end(), static_cast<unsigned char*>(source->data()));
+        osg::ref_ptr<Voxels> voxels = new Voxels(source);
+        TwinVolume twin;
+        twin.node = makeVolume(voxels);
+        twin.node->setLookupTable(makeTable(TABLE));
+        twin.node->setShading(true);
+        twin.setPeriod(0.5);
+        const FloatImage onTheFly = support::renderScene(twin.node, view());
+        twin.node->setGradients(VolumeAppearance::PRECOMPUTED);
+        support::SceneRenderer renderer(twin.node, view());
+        const FloatImage precomputed = renderer.render();
+        EXPECT_LT(support::compare(onTheFly, precomputed).rmse, 1e-2);
+        EXPECT_GT(support::compare(onTheFly, precomputed).pixels, 1000u);
+        const double texel = type == VoxelType::UINT8 ? 8.0 : 16.0;
+        EXPECT_EQ(renderer.counters().at("osgVolumizer bytes uploaded"),
+                  texel * SIZE * SIZE * SIZE);
+    }
+}
+
+TEST_F(Shading, BricksWithEnoughOverlapShowNoSeams)
+{
+    TwinVolume twin = makeTwin(makeVoxels(glm::ivec3(SIZE), bumps), TABLE);
+    twin.node->setShading(true);
+    twin.setPeriod(0.25);
+    for (const auto gradients : {VolumeAppearance::ON_THE_FLY, VolumeAppearance::PRECOMPUTED}) {
+        twin.node->setGradients(gradients);
+        osg::ref_ptr<Voxels> whole = makeVoxels(glm::ivec3(SIZE), bumps);
+        twin.node->setVoxels(whole);
+        const FloatImage one = support::renderScene(twin.node, view());
+        osg::ref_ptr<Voxels> bricks = makeVoxels(glm::ivec3(SIZE), bumps);
+        bricks->setBrickSize(glm::ivec3(12));
+        bricks->setOverlap(twin.node->getRequiredOverlap());
+        twin.node->setVoxels(bricks);
+        EXPECT_LT(support::compare(support::renderScene(twin.node, view()), one).rmse, 1e-4);
+    }
+}
+
+TEST_F(Shading, TheHeadLightIsOsgsOrOurs)
+{
+    // Without any light: one along the view. OSG's head light is the same one, less bright.
+    TwinVolume twin = makeTwin(makeVoxels(glm::ivec3(SIZE), bumps), TABLE);
+    twin.node->setShading(true);
+    twin.node->setMaterial({0.1, 0.9, 0.0, 1.0});
+    twin.setPeriod(0.5);
+    RenderOptions options = view();
+    TestLight head;
+    head.position = glm::inverse(support::toGlm(options.view)) * glm::dvec4(0, 0, 1, 0);
+    for (const bool osgLight : {false, true}) {
+        options.light = osgLight;
+        head.color = glm::dvec3(osgLight ? 0.8 : 1.0); // osg::View's default light
+        head.ambient = glm::dvec3(0.0);
+        oracle::Volume volume = twin.oracle;
+        light(volume, gridOf(*twin.node->getVoxels()), {head}, options, twin.node->getMaterial());
+        oracle::Scene expectedScene = oracleScene(volume);
+        expectedScene.tolerance = 1e-7;
+        const FloatImage image = support::renderScene(twin.node, options);
+        const FloatImage expected = oraclePicture(expectedScene, options);
+        EXPECT_LT(
+            support::compare(image, expected, awayFromSilhouettes(expectedScene, options)).rmse,
+            5e-4)
+            << osgLight;
+    }
+}
+
+TEST_F(Shading, ALightThatIsOffDoesNothing)
+{
+    TwinVolume twin = makeTwin(makeVoxels(glm::ivec3(SIZE), bumps), TABLE);
+    twin.node->setShading(true);
+    const std::vector<TestLight> lights = someLights();
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    osg::ref_ptr<osg::StateSet> unused = new osg::StateSet;
+    scene->addChild(makeSource(lights[0], 1, *scene->getOrCreateStateSet()));
+    scene->addChild(twin.node);
+    const FloatImage one = support::renderScene(scene, view());
+    scene->addChild(makeSource(lights[1], 3, *unused));
+    EXPECT_EQ(support::compare(support::renderScene(scene, view()), one).maximum, 0.0);
+    scene->addChild(makeSource(lights[2], 4, *scene->getOrCreateStateSet()));
+    EXPECT_GT(support::compare(support::renderScene(scene, view()), one).rmse, 1e-2);
+}
+
+TEST_F(Shading, IsosurfacesAreLitAtTheirRoots)
+{
+    osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(SIZE), bumps);
+    TwinVolume twin = makeTwin(voxels, TABLE);
+    twin.node->setRayFunction(VolumeAppearance::ISOSURFACE);
+    twin.node->setIsoValue(0.62);
+    twin.node->setShading(true);
+    twin.setPeriod(0.25);
+    const RenderOptions options = view();
+    const std::vector<TestLight> lights = someLights();
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        scene->addChild(makeSource(lights[i], int(i), *scene->getOrCreateStateSet()));
+    scene->addChild(twin.node);
+    const FloatImage image = support::renderScene(scene, options);
+    support::savePicture(image, "isosurface");
+    const auto grid = gridOf(*voxels);
+    light(twin.oracle, grid, lights, options, twin.node->getMaterial());
+    const oracle::Camera camera = support::oracleCamera(options);
+    int hits = 0, wrong = 0;
+    for (int y = 0; y < camera.height; ++y)
+        for (int x = 0; x < camera.width; ++x) {
+            double depth;
+            if (!firstCrossing(twin.oracle, camera, x + 0.5, y + 0.5, 0.62, depth)) continue;
+            oracle::Crossing c;
+            cross(rayThrough(camera, x + 0.5, y + 0.5), camera, twin.oracle, c);
+            const glm::dvec3 expected = twin.oracle.shade(glm::dvec3(twin.oracle.table.color(0.62)),
+                                                          c.fieldOrigin + depth * c.fieldDirection,
+                                                          c.eyeOrigin + depth * c.eyeDirection);
+            ++hits;
+            wrong += glm::length(glm::dvec3(image.at(x, y)) - expected) > 1e-3;
+        }
+    EXPECT_GT(hits, 500);
+    EXPECT_LE(wrong, hits / 100);
+}
+
+} // namespace
