@@ -231,6 +231,7 @@ void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>
         addSurfaces(begin, rank, region, depth, leaves);
         addLayerStep(rest ? Step::END_REST : Step::END_RANK, query, region, depth, leaves);
     }
+    addSurfaces(Step::DEPTH, 0, region, depth, leaves);
 }
 
 // Intervals without surfaces: slabs, alternating who goes first.
@@ -273,6 +274,7 @@ void GroupComposer::addSurfaces(LayerLeaf::Step step, int index, const Region& r
 {
     for (std::size_t s : region.surfaces) {
         const ForeignLeaf& surface = *_surfaces[s].leaf;
+        if (step == LayerLeaf::DEPTH && !writesDepth(surface.leaf()._parent)) continue;
         leaves.push_back({depth, surface.copy(*layerSurfaceState(step, index))});
         ++_counts.surfacePieces;
     }

@@ -87,7 +87,6 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
     set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
     set->setRenderBinDetails(10, "DepthSortedBin");
-    set->setNestRenderBins(false);
     return set;
 }
 
