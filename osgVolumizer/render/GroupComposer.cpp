@@ -64,6 +64,21 @@ void GroupComposer::prepareVolumes()
     }
 }
 
+VolumeOutline GroupComposer::outlineOf(const VolumeInstance& volume) const
+{
+    VolumeOutline outline;
+    outline.depth = volume.depth;
+    // Faces of slabs are a little larger than their box.
+    outline.margin = {4.0 / std::max(_viewport[2], 1), 4.0 / std::max(_viewport[3], 1)};
+    const glm::dmat4 toClip = toGlm(*volume.leaf->_projection) * toGlm(*volume.leaf->_modelview);
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec4 clip = toClip * glm::dvec4(volume.prepared->regionBox.corner(i), 1.0);
+        outline.everywhere = outline.everywhere || !(clip.w > 0.0);
+        outline.corners[i] = glm::dvec2(clip) / clip.w;
+    }
+    return outline;
+}
+
 // Surfaces that, looked at closely, reach into no volume stay the leaves they are.
 void GroupComposer::prepareSurfaces(std::vector<OrderedLeaf>& leaves)
 {
@@ -73,8 +88,9 @@ void GroupComposer::prepareSurfaces(std::vector<OrderedLeaf>& leaves)
         surface.mesh = SurfaceMesh::of(*leaf);
         surface.view = surface.mesh ? surface.mesh->view() : leaf->view();
         const bool reaches =
-            std::any_of(_volumes.begin(), _volumes.end(), [&surface](const PreparedVolume& v) {
-                return v.instance->depth.overlaps(surface.view.depth);
+            std::any_of(_volumes.begin(), _volumes.end(), [&](const PreparedVolume& v) {
+                return surface.mesh ? surface.mesh->touches(outlineOf(*v.instance))
+                                    : v.instance->depth.overlaps(surface.view.depth);
             });
         if (reaches)
             _surfaces.push_back(std::move(surface));
