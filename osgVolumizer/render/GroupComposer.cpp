@@ -387,8 +387,8 @@ void GroupComposer::addVolume(PreparedVolume& volume, std::shared_ptr<const Volu
     osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
         drawable, instance.leaf->_projection, instance.leaf->_modelview, static_cast<float>(depth));
     osgUtil::StateGraph* graph = instance.leaf->_parent;
-    if (look->features.key() != instance.look->features.key())
-        graph = graph->_parent->find_or_insert(volumeStateSet(look->features));
+    const osg::ref_ptr<osg::StateSet> set = volumeStateSet(look->features);
+    if (graph->getStateSet() != set) graph = graph->_parent->find_or_insert(set);
     graph->addLeaf(leaf);
     leaves.push_back({depth, leaf.get()});
 }

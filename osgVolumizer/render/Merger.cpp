@@ -2,6 +2,7 @@
 
 #include "Matrices.h"
 #include "MergeGroups.h"
+#include "Paint.h"
 #include "Statistics.h"
 
 #include "../core/ordering/BrickOrder.h"
@@ -173,8 +174,9 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
 void Merger::merge(LeafList& leaves, const std::vector<VolumeInstance*>& visible,
                    FrameCounts& counts)
 {
-    // Gathered rays are one layer, which nothing can be merged into.
     std::vector<VolumeInstance*> merged = visible;
+    applyPaint(merged);
+    // Gathered rays are one layer, which nothing can be merged into.
     const auto gathering =
         std::stable_partition(merged.begin(), merged.end(), [](const VolumeInstance* volume) {
             return !volume->look->features.gathers();

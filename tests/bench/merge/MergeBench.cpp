@@ -1,7 +1,7 @@
 // What translucent geometry costs in and around a volume: time of a frame against that of the same
-// scene with the geometry hidden, and of the geometry alone. Frames of all are interleaved, and medians
-// compared, so that a busy machine slows all. CPU time is that of the whole process, so that with a
-// software rasteriser it is what a frame costs, whatever else the machine does.
+// scene with the geometry hidden, and of the geometry alone. Frames of all are interleaved, and
+// medians compared, so that a busy machine slows all. CPU time is that of the whole process, so
+// that with a software rasteriser it is what a frame costs, whatever else the machine does.
 //
 //   mergebench [frames] [name]
 
