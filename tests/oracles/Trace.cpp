@@ -82,21 +82,35 @@ Medium mediumOf(const Crossing& c, double depth)
     return m;
 }
 
+glm::dvec3 paintOf(const Crossing& c, double depth)
+{
+    const double value = c.volume->field->value(c.fieldOrigin + depth * c.fieldDirection);
+    const glm::dvec4 color = c.volume->table.color(value);
+    return 1.0 - color.a + color.a * glm::dvec3(color);
+}
+
 void integratePiece(const std::vector<const Crossing*>& active, double t0, double t1,
                     double tolerance, Light& light)
 {
     if (active.empty()) return;
     if (active.size() == 1) {
+        if (active[0]->volume->paint) return;
         integrate([c = active[0]](double t) { return mediumOf(*c, t); }, t0, t1, tolerance, light);
         return;
     }
     const auto sum = [&active](double t) {
         Medium total;
+        glm::dvec3 paint(1.0);
         for (const Crossing* c : active) {
+            if (c->volume->paint) {
+                paint *= paintOf(*c, t);
+                continue;
+            }
             const Medium m = mediumOf(*c, t);
             total.extinction += m.extinction;
             total.emission += m.emission;
         }
+        total.emission *= paint;
         return total;
     };
     integrate(sum, t0, t1, tolerance, light);

@@ -58,33 +58,6 @@ float sortedDepth(int i)
 }
 #endif
 
-// Narrows the segment to a half-space.
-void clipToPlane(vec4 plane, vec3 origin, vec3 direction, inout float tNear, inout float tFar)
-{
-    float distance = dot(plane.xyz, origin) + plane.w;
-    float rate = dot(plane.xyz, direction);
-    if (rate > 0.0)
-        tNear = max(tNear, -distance / rate);
-    else if (rate < 0.0)
-        tFar = min(tFar, -distance / rate);
-    else if (distance < 0.0)
-        tFar = tNear;
-}
-
-// The segment in a box; boxes are half-open, so that neighbours share no ray and leave none out.
-vec2 boxSegment(vec3 low, vec3 high, vec3 origin, vec3 direction)
-{
-    bvec3 parallel = equal(direction, vec3(0.0));
-    vec3 safe = mix(direction, vec3(1.0), parallel);
-    vec3 a = (low - origin) / safe;
-    vec3 b = (high - origin) / safe;
-    vec3 always = mix(vec3(1e30), vec3(-1e30), lessThanEqual(low, origin));
-    always = mix(vec3(1e30), always, lessThan(origin, high));
-    vec3 enter = mix(min(a, b), always, parallel);
-    vec3 leave = mix(max(a, b), -always, parallel);
-    return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
-}
-
 // Number of steps for a segment, such that their mean over all segments is the period.
 float stepsOf(float tNear, float tFar)
 {
@@ -211,6 +184,9 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 #ifdef SHADING
             color = lit(vec4(color, 1.0), origin, direction, t).rgb;
 #endif
+#ifdef PAINTED
+            color = painted(color, origin + t * direction);
+#endif
             return vec4(color, 1.0);
         }
         before = after;
@@ -240,6 +216,9 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 #ifdef SHADING
         c = lit(c, origin, direction, 0.5 * (t + next));
 #endif
+#ifdef PAINTED
+        c.rgb = painted(c.rgb, origin + 0.5 * (t + next) * direction);
+#endif
         float through = exp2(-c.a * (next - t) * unitsPerDepth);
         color += transmittance * (1.0 - through) * c.rgb;
         transmittance *= through;
@@ -267,6 +246,9 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
         vec4 c = classify(p + i * dp);
 #ifdef SHADING
         c = lit(c, origin, direction, tNear + (i + 0.5) * dt);
+#endif
+#ifdef PAINTED
+        c.rgb = painted(c.rgb, p + i * dp);
 #endif
         float through = exp2(-c.a * stepUnits);
         color += transmittance * (1.0 - through) * c.rgb;
@@ -308,5 +290,15 @@ void main()
 #endif
     if (!(max(tNear, brick.x) < min(tFar, brick.y))) discard;
 
+#ifdef PAINTED
+    // Colours jump where paint begins, so segments end there.
+    fragColor = vec4(0.0);
+    for (float t = tNear; t < tFar && fragColor.a < 1.0 - OPAQUE_ENOUGH;) {
+        float next = nextCut(origin, direction, t, tFar);
+        fragColor += (1.0 - fragColor.a) * march(origin, direction, t, next, brick);
+        t = next;
+    }
+#else
     fragColor = march(origin, direction, tNear, tFar, brick);
+#endif
 }
