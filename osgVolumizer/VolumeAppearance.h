@@ -56,9 +56,12 @@ public:
         PREINTEGRATED
     };
 
-    /// What a pixel shows of the values on its ray, within the volume and in front of opaque geometry.
-    enum RayFunction {
-        /// Light emitted and absorbed along the ray. All other functions draw the volume as one layer,
+    /// What a pixel shows of the values on its ray, within the volume and in front of opaque
+    /// geometry.
+    enum RayFunction
+    {
+        /// Light emitted and absorbed along the ray. All other functions draw the volume as one
+        /// layer,
         /// in depth order by its centre.
         COMPOSITE,
         /// The highest value, which is then looked up: colour, and opacity as for a layer one unit
@@ -68,20 +71,25 @@ public:
         MINIMUM,
         /// The mean value over the length of the ray, then looked up. Not for RGBA voxels.
         AVERAGE,
-        /// The integral of the value, as a fraction of the range, over the length in opacity units, then
+        /// The integral of the value, as a fraction of the range, over the length in opacity units,
+        /// then
         /// looked up as a fraction: choose the opacity unit such that sums lie in [0, 1]. Not for
         /// RGBA voxels.
         SUM,
-        /// The first place where the interpolated value crosses the iso-value, opaque, in the table's
+        /// The first place where the interpolated value crosses the iso-value, opaque, in the
+        /// table's
         /// colour; needs a region that is convex per brick. Not for RGBA voxels. Where the
         /// ray enters with a value already beyond there is no surface.
         ISOSURFACE
     };
-    /// Where gradients for shading come from. Both are central differences over a sample's distance.
-    enum Gradients {
+    /// Where gradients for shading come from. Both are central differences over a sample's
+    /// distance.
+    enum Gradients
+    {
         /// Six more samples of the voxels each time; no memory.
         ON_THE_FLY,
-        /// One sample of a texture that holds gradients besides values; four times the memory (of 8-bit
+        /// One sample of a texture that holds gradients besides values; four times the memory (of
+        /// 8-bit
         /// voxels eight times).
         PRECOMPUTED
     };
@@ -112,9 +120,9 @@ public:
     Status setIsoValue(double dataValue);
     double getIsoValue() const { return _isoValue; }
 
-    /// Lights the volume with the scene's lights (osg::LightSource, the viewer's head light; up to eight, a head
-    /// light where there is none): Blinn-Phong, two-sided, normals from the gradient. Off by
-    /// default. Where the voxels do not vary there is no normal, and only ambient light.
+    /// Lights the volume with the scene's lights (osg::LightSource, the viewer's head light; up to
+    /// eight, a head light where there is none): Blinn-Phong, two-sided, normals from the gradient.
+    /// Off by default. Where the voxels do not vary there is no normal, and only ambient light.
     void setShading(bool shading) { _shading = shading; }
     bool getShading() const { return _shading; }
     /// colour * (ambient + sum over lights (light's ambient + diffuse * light's diffuse * |n l|)) +
@@ -128,8 +136,8 @@ public:
     void setGradients(Gradients gradients) { _gradients = gradients; }
     Gradients getGradients() const { return _gradients; }
 
-    /// Bits per colour channel, 8, 16 or 32 (default), that volumes are accumulated in, whatever the framebuffer
-    /// has; in one view the largest of its volumes. 8 bits round every blend.
+    /// Bits per colour channel, 8, 16 or 32 (default), that volumes are accumulated in, whatever
+    /// the framebuffer has; in one view the largest of its volumes. 8 bits round every blend.
     Status setAccumulationBits(int bits);
     int getAccumulationBits() const { return _accumulationBits; }
 

@@ -111,8 +111,8 @@ VoxelBlock texelsOf(const Voxels& voxels, const VoxelBlock& block, const TexelFo
     return {converted, converted->data(), converted->size()};
 }
 
-// Value and central differences, less at the last samples, of texels that are floats or unsigned integers.
-// Integers stay integers: values and half of differences, moved up, as 16 bits.
+// Value and central differences, less at the last samples, of texels that are floats or unsigned
+// integers. Integers stay integers: values and half of differences, moved up, as 16 bits.
 template <class T, class Out>
 VoxelBlock withGradients(const VoxelBlock& block, const glm::ivec3& size)
 {

@@ -28,8 +28,8 @@ public:
     /// The textures of these voxels, made on the first call.
     static osg::ref_ptr<BrickTextures> of(const Voxels& voxels);
 
-    /// Null where the source fails. Reads the brick unless it is resident. `gradients`: central differences in
-    /// red, green and blue, see gradientDecode(), and the value in alpha.
+    /// Null where the source fails. Reads the brick unless it is resident. `gradients`: central
+    /// differences in red, green and blue, see gradientDecode(), and the value in alpha.
     BrickTexture get(const Voxels& voxels, std::int64_t brick, bool gradients = false);
 
     void resizeGLObjectBuffers(unsigned int maximum) override;

@@ -25,7 +25,8 @@ std::map<unsigned, std::shared_ptr<ContextResources>>& registry()
 void release(ContextResources& resources, osg::State& state)
 {
     const unsigned contextId = state.getContextID();
-    for (const auto& program : resources.rays.programs) program.second->releaseGLObjects(&state);
+    for (const auto& program : resources.rays.programs)
+        program.second->releaseGLObjects(&state);
     // Without the extensions there never was a context to make anything in.
     osg::GLExtensions* gl = osg::GLExtensions::Get(contextId, false);
     if (gl) {
@@ -33,9 +34,9 @@ void release(ContextResources& resources, osg::State& state)
         resources.indices.release(*gl);
         AccumulationBuffers& buffers = resources.accumulation;
         LayerBuffers& layers = buffers.layers;
-        for (GLuint* name : {&buffers.framebuffer, &buffers.layerFramebuffer,
-                             &layers.sortedFramebuffer, &layers.rankFramebuffer,
-                              &resources.rays.framebuffer})
+        for (GLuint* name :
+             {&buffers.framebuffer, &buffers.layerFramebuffer, &layers.sortedFramebuffer,
+              &layers.rankFramebuffer, &resources.rays.framebuffer})
             if (*name) gl->glDeleteFramebuffers(1, name);
         if (layers.queries[0]) {
             gl->glDeleteFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);

@@ -129,7 +129,8 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
     const std::vector<VolumeInstance*> layers(gathering, merged.end());
     merged.erase(gathering, merged.end());
     MergeGroups groups = findMergeGroups(merged, leaves);
-    for (VolumeInstance* volume : layers) groups.groups.push_back({{volume}, {}});
+    for (VolumeInstance* volume : layers)
+        groups.groups.push_back({{volume}, {}});
 
     std::unordered_set<const osgUtil::RenderLeaf*> replaced;
     for (const auto& volume : _volumes)

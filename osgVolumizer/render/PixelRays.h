@@ -16,11 +16,12 @@ namespace render {
 /// mirrored view.
 struct PixelRays
 {
-    glm::dvec2 windowCenter{0.0};   ///< window coordinates are counted from here, for precision
-    glm::dmat3 origin{1.0};         ///< frame; times (dx, dy, 1)
-    glm::dmat3 direction{1.0};      ///< frame units per eye unit of depth; times (dx, dy, 1)
+    glm::dvec2 windowCenter{0.0}; ///< window coordinates are counted from here, for precision
+    glm::dmat3 origin{1.0};       ///< frame; times (dx, dy, 1)
+    glm::dmat3 direction{1.0};    ///< frame units per eye unit of depth; times (dx, dy, 1)
     glm::dmat3 originEye{1.0}, directionEye{1.0}; ///< the same, in the eye frame
-    glm::dvec3 clipZOrigin{0.0}, clipZDirection{0.0}; ///< clip z = dot(.., (dx, dy, 1)) + t * dot(..)
+    glm::dvec3 clipZOrigin{0.0},
+        clipZDirection{0.0}; ///< clip z = dot(.., (dx, dy, 1)) + t * dot(..)
     glm::dvec3 clipWOrigin{0.0}, clipWDirection{0.0};
 };
 

@@ -5,8 +5,8 @@
 #include "ContextResources.h"
 #include "Matrices.h"
 #include "PixelRays.h"
-#include "ScissorScope.h"
 #include "RayTarget.h"
+#include "ScissorScope.h"
 #include "Statistics.h"
 #include "Uniforms.h"
 
@@ -44,8 +44,8 @@ void setTable(const Uniforms& uniforms, const VolumeLook& look)
 // Normals are to be seen in the eye frame, and their length in ranges per opacity unit.
 glm::dmat3 gradientToEye(const VolumeLook& look, const glm::dmat3& frameToEye)
 {
-    const double unitsToEye = std::cbrt(std::abs(glm::determinant(frameToEye) /
-                                                 glm::determinant(look.frameToUnits)));
+    const double unitsToEye =
+        std::cbrt(std::abs(glm::determinant(frameToEye) / glm::determinant(look.frameToUnits)));
     return glm::inverse(glm::transpose(frameToEye)) * (unitsToEye * look.texelToFraction);
 }
 
@@ -226,8 +226,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     if (_look->features.shading) setShading(uniforms, *_look, *rays, toEye, state);
     if (_look->features.opaqueDepth)
         setDepthTextures(state, uniforms, *rays, _look->features, resources->accumulation);
-    if (_look->table.texture)
-        state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
+    if (_look->table.texture) state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
     // Gathered values hide nothing, so they need no order, and no parts.
     std::optional<RayTarget> target;
     if (_look->features.gathers())

@@ -50,14 +50,14 @@ struct VolumeLook
     ProgramFeatures features;
     TableTexture table;
     glm::vec2 valueToEntry{1.0f, 0.0f}; ///< scale and offset: texel -> entry of the table
-    double texelToFraction = 1.0; ///< scale of texels to fractions of the range
+    double texelToFraction = 1.0;       ///< scale of texels to fractions of the range
     float isoTexel = 0.0f;
-    glm::vec4 material{0.0f}; ///< ambient, diffuse, specular, shininess
+    glm::vec4 material{0.0f};             ///< ambient, diffuse, specular, shininess
     glm::vec2 gradientDecode{1.0f, 0.0f}; ///< scale, offset: gradient texture -> texels per voxel
     std::vector<EyeLight> lights;         ///< of the stage; some may be off
-    glm::dmat3 frameToUnits{1.0};     ///< frame vector -> opacity units
-    glm::dvec3 center{0.0};           ///< frame; the middle of the volume
-    double referenceDepth = 0.0;      ///< eye units; depths of slabs are counted from here
+    glm::dmat3 frameToUnits{1.0};         ///< frame vector -> opacity units
+    glm::dvec3 center{0.0};               ///< frame; the middle of the volume
+    double referenceDepth = 0.0;          ///< eye units; depths of slabs are counted from here
     double step = 1.0;                ///< between samples or slices: depth, distance or frame units
     glm::dvec3 surfaceNormal{0.0};    ///< slices: frame units; along which `step` is counted
     bool inFrontOfLayer = false;      ///< slabs: which part of a segment split by surfaces

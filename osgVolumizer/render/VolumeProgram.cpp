@@ -53,9 +53,9 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
     result->addShader(
         new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource(kind + ".vert.glsl")));
     std::string fragment = header(features);
-    for (const std::string& file : {std::string("voxels.glsl"), std::string("transfer.glsl"),
-                                    std::string("ray.glsl"), std::string("shading.glsl"),
-                                    kind + ".frag.glsl"})
+    for (const std::string& file :
+         {std::string("voxels.glsl"), std::string("transfer.glsl"), std::string("ray.glsl"),
+          std::string("shading.glsl"), kind + ".frag.glsl"})
         fragment += shaderSource(file);
     result->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));
     return result;
@@ -102,8 +102,8 @@ osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features)
 {
     osg::ref_ptr<osg::Program> result = new osg::Program;
     result->setName("osgVolumizer resolve");
-    result->addShader(new osg::Shader(osg::Shader::VERTEX,
-                                      header(features) + shaderSource("resolve.vert.glsl")));
+    result->addShader(
+        new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource("resolve.vert.glsl")));
     result->addShader(new osg::Shader(osg::Shader::FRAGMENT,
                                       header(features) + shaderSource("resolve.frag.glsl")));
     return result;

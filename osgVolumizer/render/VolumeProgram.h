@@ -24,13 +24,13 @@ struct ProgramFeatures
     bool spherical = false; ///< slices are spheres about the eye
     bool exact = false;     ///< interpolate from fetched samples, in full precision
     bool nearest = false, cubic = false; ///< else linear
-    bool before = false;        ///< look samples up, then interpolate
-    bool preIntegrated = false; ///< look runs of values up
-    bool smoothTable = false;   ///< interpolate between entries
+    bool before = false;                 ///< look samples up, then interpolate
+    bool preIntegrated = false;          ///< look runs of values up
+    bool smoothTable = false;            ///< interpolate between entries
     VolumeAppearance::RayFunction rayFunction = VolumeAppearance::COMPOSITE;
     bool shading = false;
     bool gradientTexture = false; ///< brick textures hold gradients besides values
-    int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
+    int planeCount = 0;           ///< half-spaces that end the segment, besides the clip box
 
     /// Whether the rays' values are gathered in a target of their own, and drawn as one layer.
     bool gathers() const
@@ -44,9 +44,9 @@ struct ProgramFeatures
     {
         std::uint64_t result =
             static_cast<std::uint64_t>(planeCount) << 3 | static_cast<std::uint64_t>(rayFunction);
-        for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth, layerDepth,
-                          ranked, spherical, exact, nearest, cubic, before, preIntegrated,
-                          smoothTable, shading, gradientTexture})
+        for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth,
+                          layerDepth, ranked, spherical, exact, nearest, cubic, before,
+                          preIntegrated, smoothTable, shading, gradientTexture})
             result = result << 1 | std::uint64_t(flag);
         return result;
     }

@@ -45,7 +45,8 @@ struct Volume
     /// Where set, these take the place of field and table: extinction times red, green and blue,
     /// and extinction, per unit.
     std::array<std::shared_ptr<const Field>, 4> medium;
-    /// Where set: what a colour becomes at a place in the field frame that lies there in the eye frame.
+    /// Where set: what a colour becomes at a place in the field frame that lies there in the eye
+    /// frame.
     std::function<glm::dvec3(const glm::dvec3& color, const glm::dvec3& field,
                              const glm::dvec3& eye)>
         shade;

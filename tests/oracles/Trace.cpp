@@ -75,8 +75,7 @@ Medium mediumOf(const Crossing& c, double depth)
     Medium m;
     m.extinction = Table::extinction(color.a) * c.objectLength / c.volume->unit;
     glm::dvec3 rgb(color);
-    if (c.volume->shade)
-        rgb = c.volume->shade(rgb, place, c.eyeOrigin + depth * c.eyeDirection);
+    if (c.volume->shade) rgb = c.volume->shade(rgb, place, c.eyeOrigin + depth * c.eyeDirection);
     m.emission = m.extinction * rgb;
     return m;
 }

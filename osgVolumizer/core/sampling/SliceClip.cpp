@@ -27,7 +27,7 @@ void append(const SlicePlan& plan, const RecordPolygon& face, std::size_t bin, d
 
 void clipFace(const SlicePlan& plan, int surface, double spacing, Slicer::Chunk& chunk)
 {
-    const std::size_t firstBin = static_cast<std::size_t>(plan.rank[surface - plan.firstSurface]) *
+    const std::size_t firstBin = static_cast<std::size_t>(surface - plan.firstSurface) *
                                  static_cast<std::size_t>(plan.brickCount);
     if (!plan.boxes || plan.boxes->boxes().empty()) {
         append(plan, chunk.whole, firstBin, spacing, chunk);
@@ -53,24 +53,31 @@ void clipFace(const SlicePlan& plan, int surface, double spacing, Slicer::Chunk&
 
 } // namespace
 
-void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
-               const TetraBlocks::Tetra& tetra, Slicer::Chunk& chunk)
+void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block, std::uint32_t tetrahedron,
+               const double* layers, Slicer::Chunk& chunk)
 {
     const TetraBlocks& blocks = *plan.blocks;
-    const auto stride = blocks.recordSize() - 1;
+    const std::size_t stride = blocks.recordSize();
+    const TetraBlocks::Tetra& tetra = blocks.tetrahedra[block.firstTetra + tetrahedron];
     const double* records[4];
     double f[4];
     for (int i = 0; i < 4; ++i) {
         records[i] = blocks.record(block.firstVertex + tetra.v[i]);
-        f[i] = records[i][stride];
+        f[i] = layers[tetra.v[i]];
     }
-    const double low = std::min(std::min(f[0], f[1]), std::min(f[2], f[3]));
-    const double high = std::max(std::max(f[0], f[1]), std::max(f[2], f[3]));
+    double low = std::min(std::min(f[0], f[1]), std::min(f[2], f[3]));
+    double high = std::max(std::max(f[0], f[1]), std::max(f[2], f[3]));
     if (!(low < high)) return;
     int first = plan.firstSurface, last = first + plan.surfaceCount;
     double scale = 1.0;
     if (plan.primitive) {
         // The tetrahedron's own layers, no thicker than those of the whole set.
+        if (plan.primitiveRanges) {
+            const DepthRange& range =
+                plan.primitiveRanges[blocks.sourceTetrahedra[block.firstTetra + tetrahedron]];
+            low = (plan.lattice.farDepth - range.farthest) / plan.lattice.spacing;
+            high = (plan.lattice.farDepth - range.nearest) / plan.lattice.spacing;
+        }
         last = std::max(1, static_cast<int>(std::ceil((high - low) * (1.0 - 1e-9))));
         scale = last / (high - low);
         first = 0;

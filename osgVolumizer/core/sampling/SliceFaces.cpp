@@ -1,5 +1,4 @@
-#include "Slicer.h"
-#include "TetraCases.h"
+#include "SliceScan.h"
 
 #include <algorithm>
 
@@ -8,77 +7,66 @@ namespace core {
 
 namespace {
 
-struct Target
+/// Makes room for `size` values without setting many more than are needed to zero.
+void growTo(std::vector<float>& values, std::size_t size)
 {
-    std::uint32_t* indices;
-    std::uint32_t* faceOffsets;
-};
-
-/// Writes the faces of one block. All that the loop needs is in local variables, since the compiler
-/// has to expect that its stores change anything else.
-template <bool Bricks>
-void emitEntries(const SlicePlan& plan, Slicer::Chunk& chunk, const TetraBlocks::Block& block,
-                 std::size_t begin, std::size_t end, Target target)
-{
-    const TetraBlocks& blocks = *plan.blocks;
-    const TetraBlocks::TetraEdges* const tetraEdges = blocks.tetraEdges.data() + block.firstTetra;
-    const TetraBlocks::Place* const places =
-        Bricks ? blocks.places.data() + block.firstTetra : nullptr;
-    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
-    const std::uint32_t* const edgePoints = chunk.edgePoints.data();
-    const int* const rank = plan.rank;
-    const auto firstSurface = static_cast<std::uint32_t>(plan.firstSurface);
-    Slicer::Count* const cursors = chunk.fast.data();
-    const std::uint64_t* const last = chunk.entries.data() + end;
-    for (const std::uint64_t* entry = chunk.entries.data() + begin; entry != last; ++entry) {
-        const std::uint64_t e = *entry;
-        const auto surface = static_cast<std::uint32_t>(e >> 32);
-        const std::uint32_t t = static_cast<std::uint32_t>(e) >> 8;
-        const TetraCase& which = TETRA_CASES[e & 15u];
-        std::size_t bin = static_cast<std::uint32_t>(rank[surface - firstSurface]);
-        if (Bricks) bin = bin * brickCount + (places[t] & TetraBlocks::BOX_MASK);
-        const Slicer::Count cursor = cursors[bin];
-        cursors[bin] = cursor + Slicer::count(1, static_cast<std::uint32_t>(which.count));
-        target.faceOffsets[Slicer::faceCount(cursor)] = Slicer::indexCount(cursor);
-        std::uint32_t* const to = target.indices + Slicer::indexCount(cursor);
-        const std::uint16_t* const edges = tetraEdges[t].e;
-        to[0] = edgePoints[edges[which.edge[0]]] + surface;
-        to[1] = edgePoints[edges[which.edge[1]]] + surface;
-        to[2] = edgePoints[edges[which.edge[2]]] + surface;
-        // Of a triangle the last corner is the third once more.
-        to[which.count - 1] = edgePoints[edges[which.edge[3]]] + surface;
-    }
+    if (values.size() >= size) return;
+    if (values.capacity() < size) values.reserve(size + size / 2);
+    values.resize(std::min(values.capacity(), size + size / 16));
 }
 
 } // namespace
 
-void Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
+bool Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
 {
     const TetraBlocks& blocks = *plan.blocks;
-    const Target target{out.faces.indices.data(), out.faces.faceOffsets.data()};
-    std::size_t i = 0;
+    const std::size_t stride = blocks.recordSize();
+    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
+    std::size_t entry = 0;
     for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
-        const std::size_t end = chunk.blockEntries[b - chunk.firstBlock];
-        if (i == end) continue;
+        const BlockFaces& faces = chunk.blockFaces[b - chunk.firstBlock];
+        if (entry == faces.endEntry) continue;
         const TetraBlocks::Block& block = blocks.blocks[b];
         listPoints(blocks.edges.data() + block.firstEdge, block.edgeCount,
                    _passed.data() + block.firstVertex, chunk);
-        writePoints(blocks, block, chunk,
-                    out.faces.vertices.data() + chunk.vertexCount * (blocks.recordSize() - 1));
+        if (!_countPoints) {
+            if (chunk.vertexCount + chunk.pointCount > 0xffffffffu) return false;
+            growTo(out.faces.vertices, (chunk.vertexCount + chunk.pointCount) * stride);
+        }
+        writePoints(blocks, block, _layers.data() + block.firstVertex, faces.base, chunk,
+                    out.faces.vertices.data() + chunk.vertexCount * stride);
         chunk.vertexCount += chunk.pointCount;
 
-        if (blocks.places.empty())
-            emitEntries<false>(plan, chunk, block, i, end, target);
+        Emission emission{};
+        emission.entries = chunk.entries.data() + entry;
+        emission.endEntries = chunk.entries.data() + faces.endEntry;
+        emission.tetraEdges = blocks.tetraEdges.data() + block.firstTetra;
+        emission.edgePoints = chunk.edgePoints.data();
+        emission.brickCount = brickCount;
+        emission.cursors =
+            chunk.fast.data() + std::size_t(faces.base - plan.firstSurface) * brickCount;
+        if (block.place == TetraBlocks::CLIP)
+            emission.places = blocks.places.data() + block.firstTetra;
         else
-            emitEntries<true>(plan, chunk, block, i, end, target);
-        i = end;
+            emission.cursors += block.place;
+        emission.indices = out.faces.indices.data();
+        emission.faceOffsets = out.faces.faceOffsets.data();
+        emitFaces(emission);
+        entry = faces.endEntry;
+    }
+    if (!_countPoints) {
+        chunk.clippedVertex = chunk.vertexCount;
+        const std::size_t values = chunk.vertexCount * stride + chunk.vertices.size();
+        if (values / stride > 0xffffffffu) return false;
+        out.faces.vertices.resize(values);
     }
     emitClipped(plan, chunk, out);
+    return true;
 }
 
 void Slicer::emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
 {
-    const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
+    const std::size_t stride = plan.blocks->recordSize();
     std::copy(chunk.vertices.begin(), chunk.vertices.end(),
               out.faces.vertices.begin() +
                   static_cast<std::ptrdiff_t>(chunk.clippedVertex * stride));

@@ -1,6 +1,4 @@
-#include "Slicer.h"
-
-#include "TetraCases.h"
+#include "SliceScan.h"
 
 #include <algorithm>
 #include <array>
@@ -17,16 +15,6 @@ namespace {
 constexpr std::size_t MAX_BINS = std::size_t(1) << 24;
 constexpr std::size_t BLOCKS_PER_CHUNK = 8; ///< fewer are not worth a task
 
-/// What one face of each case adds to its bin: 4 indices where two vertices are on either side,
-/// else
-/// 3. The cases without a face do not occur.
-constexpr std::array<Slicer::Count, 16> FACE_COUNTS = [] {
-    std::array<Slicer::Count, 16> counts{};
-    for (std::size_t mask = 0; mask < 16; ++mask)
-        counts[mask] = Slicer::count(1, static_cast<std::uint32_t>(TETRA_CASES[mask].count));
-    return counts;
-}();
-
 bool outside(const Box3d& box, const std::vector<Plane>& visible)
 {
     for (const Plane& p : visible) {
@@ -39,12 +27,11 @@ bool outside(const Box3d& box, const std::vector<Plane>& visible)
 }
 
 /// Whether a slice may coincide with a face in an upper plane of the clip box.
-bool flushFace(const TetraBlocks& blocks, const TetraBlocks::Block& block,
-               const TetraBlocks::Tetra& t, unsigned faces)
+bool flushFace(const double* layers, const TetraBlocks::Tetra& t, unsigned faces)
 {
     double f[4];
     for (int k = 0; k < 4; ++k)
-        f[k] = blocks.record(block.firstVertex + t.v[k])[blocks.recordSize() - 1];
+        f[k] = layers[t.v[k]];
     for (int i = 0; i < 4; ++i)
         if ((faces >> i & 1u) && f[(i + 1) % 4] == f[(i + 2) % 4] &&
             f[(i + 1) % 4] == f[(i + 3) % 4])
@@ -74,57 +61,53 @@ void Slicer::depthRange(const SlicePlan& plan, const TetraBlocks::Block& block, 
     farthest = middle + half;
 }
 
-void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t blockIndex)
+int Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, const TetraBlocks::Block& block)
 {
-    TetraBlocks& blocks = *plan.blocks;
-    const TetraBlocks::Block& block = blocks.blocks[blockIndex];
-    if (!plan.visible.empty() && outside(block.bounds, plan.visible)) return;
-    const std::size_t size = blocks.recordSize();
-    const int first = plan.firstSurface, last = first + plan.surfaceCount;
-    const double scale = 1.0 / plan.lattice.spacing;
+    const TetraBlocks& blocks = *plan.blocks;
+    int base = plan.firstSurface, end = base + plan.surfaceCount;
+    if (block.place == TetraBlocks::OUTSIDE) return base;
+    if (!plan.visible.empty() && outside(block.bounds, plan.visible)) return base;
     double nearest, farthest;
     depthRange(plan, block, nearest, farthest);
     const double layerMargin = 1e-9; // of a layer, for the rounding of what follows
-    if (!plan.primitive &&
-        surfacesPassed((plan.lattice.farDepth - farthest) * scale - layerMargin, first, last) ==
-            surfacesPassed((plan.lattice.farDepth - nearest) * scale + layerMargin, first, last))
-        return;
-    int* passed = _passed.data() + block.firstVertex;
-    int lowest = last, highest = first;
-    double* record = blocks.record(block.firstVertex);
-    for (std::uint32_t i = 0; i < block.vertexCount; ++i, record += size) {
-        const double depth = depthOf(plan, record, blocks.sourceVertices[block.firstVertex + i]);
-        const double f = (plan.lattice.farDepth - depth) * scale;
-        record[size - 1] = f;
-        passed[i] = surfacesPassed(f, first, last);
-        lowest = std::min(lowest, passed[i]);
-        highest = std::max(highest, passed[i]);
+    if (!plan.primitive) {           // which has layers of its own
+        const double scale = 1.0 / plan.lattice.spacing;
+        const int first = base, last = end;
+        base =
+            surfacesPassed((plan.lattice.farDepth - farthest) * scale - layerMargin, first, last);
+        end = surfacesPassed((plan.lattice.farDepth - nearest) * scale + layerMargin, first, last);
+        if (base == end) return base;
     }
-    if (lowest == highest && !plan.primitive) return; // PRIMITIVE has layers of its own
+    double* layers = _layers.data() + block.firstVertex;
+    int* passed = _passed.data() + block.firstVertex;
+    const PassedRange range = listLayers(plan, block, base, end, layers, passed);
+    if (range.lowest >= range.highest && !plan.primitive) return base;
 
     const std::size_t start = chunk.entryCount;
+    const bool general = plan.general() || range.highest > MAX_BLOCK_SURFACES;
     const TetraBlocks::Tetra* tetra = blocks.tetrahedra.data() + block.firstTetra;
-    const TetraBlocks::Place* place =
-        blocks.places.empty() ? nullptr : blocks.places.data() + block.firstTetra;
-    if (!place && !plan.general()) {
+    if (block.place != TetraBlocks::CLIP && !general) {
         listFaces(tetra, 0, block.tetraCount, passed, chunk);
     } else {
         // Runs of tetrahedra that are whole in their boxes go the fast way.
         std::uint32_t runStart = 0;
         for (std::uint32_t t = 0; t < block.tetraCount; ++t) {
-            const TetraBlocks::Place p = place ? place[t] : 0;
+            const TetraBlocks::Place p = block.place == TetraBlocks::CLIP
+                                             ? blocks.places[block.firstTetra + t]
+                                             : block.place;
             const bool flush = p < TetraBlocks::OUTSIDE && p > TetraBlocks::BOX_MASK &&
-                               flushFace(blocks, block, tetra[t], p >> TetraBlocks::FACE_SHIFT);
-            if (p < TetraBlocks::OUTSIDE && !flush && !plan.general()) continue;
+                               flushFace(layers, tetra[t], p >> TetraBlocks::FACE_SHIFT);
+            if (p < TetraBlocks::OUTSIDE && !flush && !general) continue;
             listFaces(tetra, runStart, t - runStart, passed, chunk);
             runStart = t + 1;
-            if (p != TetraBlocks::OUTSIDE) clipTetra(plan, block, tetra[t], chunk);
+            if (p != TetraBlocks::OUTSIDE) clipTetra(plan, block, t, layers, chunk);
         }
         listFaces(tetra, runStart, block.tetraCount - runStart, passed, chunk);
     }
-    if (chunk.entryCount > start)
+    if (_countPoints && chunk.entryCount > start)
         chunk.vertexCount +=
             countPoints(blocks.edges.data() + block.firstEdge, block.edgeCount, passed);
+    return base;
 }
 
 void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
@@ -135,31 +118,32 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
     chunk.clipped.assign(bins, 0);
     chunk.entryCount = 0;
     chunk.vertexCount = 0;
-    chunk.blockEntries.clear();
+    chunk.blockFaces.clear();
     chunk.bins.clear();
     chunk.sizes.clear();
     chunk.vertices.clear();
     chunk.spacings.clear();
     const TetraBlocks& blocks = *plan.blocks;
-    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
-    const int* const rank = plan.rank;
-    const auto firstSurface = static_cast<std::uint32_t>(plan.firstSurface);
+    const auto brickCount = static_cast<std::size_t>(plan.brickCount);
     for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
+        const TetraBlocks::Block& block = blocks.blocks[b];
         const std::size_t start = chunk.entryCount;
-        countBlock(plan, chunk, b);
-        chunk.blockEntries.push_back(chunk.entryCount);
-        const TetraBlocks::Place* const places =
-            blocks.places.empty() ? nullptr : blocks.places.data() + blocks.blocks[b].firstTetra;
-        Count* const counts = chunk.fast.data();
-        const std::uint64_t* const end = chunk.entries.data() + chunk.entryCount;
-        for (const std::uint64_t* entry = chunk.entries.data() + start; entry != end; ++entry) {
-            const std::uint64_t e = *entry;
-            std::size_t bin = static_cast<std::uint32_t>(rank[(e >> 32) - firstSurface]);
-            if (places)
-                bin = bin * brickCount +
-                      (places[static_cast<std::uint32_t>(e) >> 8] & TetraBlocks::BOX_MASK);
-            counts[bin] += FACE_COUNTS[e & 15u];
+        const int base = countBlock(plan, chunk, block);
+        chunk.blockFaces.push_back({chunk.entryCount, base});
+        Count* counts =
+            chunk.fast.data() + static_cast<std::size_t>(base - plan.firstSurface) * brickCount;
+        const std::uint32_t* entry = chunk.entries.data() + start;
+        const std::uint32_t* const end = chunk.entries.data() + chunk.entryCount;
+        if (block.place != TetraBlocks::CLIP) {
+            for (counts += block.place; entry != end; ++entry)
+                counts[(*entry >> 14) * brickCount] += FACE_COUNTS[*entry & 15u];
+            continue;
         }
+        const TetraBlocks::Place* const places = blocks.places.data() + block.firstTetra;
+        for (; entry != end; ++entry)
+            counts[(*entry >> 14) * brickCount +
+                   (places[*entry >> 4 & 0x3ffu] & TetraBlocks::BOX_MASK)] +=
+                FACE_COUNTS[*entry & 15u];
     }
     for (std::size_t f = 0; f < chunk.bins.size(); ++f)
         chunk.clipped[chunk.bins[f]] += count(1, chunk.sizes[f]);
@@ -184,14 +168,18 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
     }
     if (indices > 0xffffffffu || vertices > 0xffffffffu) return false;
     out.faces.format = plan.blocks->format();
-    out.faces.vertices.resize(vertices * stride);
+    if (_countPoints) out.faces.vertices.resize(vertices * stride);
     out.faces.indices.resize(indices);
     out.faces.faceOffsets.resize(faces + 1);
     out.faceSpacings.resize(plan.primitive ? faces : 0);
     out.ranges.resize(static_cast<std::size_t>(plan.surfaceCount) *
                       static_cast<std::size_t>(plan.brickCount));
     Count at = 0;
-    for (std::size_t bin = 0; bin < out.ranges.size(); ++bin) {
+    const auto brickCount = static_cast<std::size_t>(plan.brickCount);
+    for (std::size_t place = 0; place < out.ranges.size(); ++place) {
+        const std::size_t bin =
+            static_cast<std::size_t>(plan.order[place / brickCount]) * brickCount +
+            place % brickCount;
         const Count start = at;
         for (std::size_t c = 0; c < chunkCount; ++c) {
             const Count n = _chunks[c].fast[bin];
@@ -203,8 +191,8 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
             _chunks[c].clipped[bin] = at;
             at += n;
         }
-        out.ranges[bin] = {faceCount(start), faceCount(at) - faceCount(start), indexCount(start),
-                           indexCount(at) - indexCount(start)};
+        out.ranges[place] = {faceCount(start), faceCount(at) - faceCount(start), indexCount(start),
+                             indexCount(at) - indexCount(start)};
     }
     out.faces.faceOffsets[faces] = static_cast<std::uint32_t>(indices);
     return true;
@@ -242,12 +230,20 @@ try {
             executor->run(static_cast<int>(chunkCount), std::cref(task));
     };
     _passed.resize(plan.blocks->sourceVertices.size());
+    _layers.resize(_passed.size());
+    // One chunk appends its points as it goes; several have to know where each begins.
+    _countPoints = chunkCount > 1;
     forAll([&](int c) { countChunk(plan, _chunks[static_cast<std::size_t>(c)]); });
-    if (!placeBins(plan, chunkCount, out))
-        return {ErrorCode::TOO_LARGE, "polygonize: the faces have more than 2^32 corners."};
-    forAll([&](int c) { emitChunk(plan, _chunks[static_cast<std::size_t>(c)], out); });
-    return {};
+    bool fits = placeBins(plan, chunkCount, out);
+    if (fits && chunkCount == 1)
+        fits = emitChunk(plan, _chunks[0], out);
+    else if (fits)
+        forAll([&](int c) { emitChunk(plan, _chunks[static_cast<std::size_t>(c)], out); });
+    if (fits) return {};
+    out = PolygonizedFaces();
+    return {ErrorCode::TOO_LARGE, "polygonize: the faces have more than 2^32 corners."};
 } catch (const std::bad_alloc&) {
+    out = PolygonizedFaces();
     return {ErrorCode::TOO_LARGE, "polygonize: the faces do not fit in memory."};
 }
 
