@@ -1,5 +1,7 @@
 #include "TetraBlocks.h"
 
+#include "../LargePages.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -58,7 +60,7 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
     blocks.clear();
     sourceVertices.clear();
     sortTetrahedra(set);
-    tetrahedra.resize(set.tetraCount());
+    resizeLarge(tetrahedra, set.tetraCount());
     _stamps.assign(set.vertices.size(), NONE);
     _local.resize(set.vertices.size());
     for (std::size_t i = 0; i < tetrahedra.size(); ++i) {
@@ -94,7 +96,7 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
     findEdges();
     const std::size_t stride = recordSize();
     const auto position = static_cast<std::size_t>(_format.positionOffset());
-    records.resize(sourceVertices.size() * stride + RECORD_PADDING);
+    resizeLarge(records, sourceVertices.size() * stride + RECORD_PADDING);
     for (Block& block : blocks)
         for (std::uint32_t i = block.firstVertex; i < block.firstVertex + block.vertexCount; ++i) {
             const double* from = set.vertices.record(sourceVertices[i]);
@@ -112,7 +114,7 @@ void TetraBlocks::findEdges()
 {
     static constexpr int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
     edges.clear();
-    tetraEdges.resize(tetrahedra.size() + 1);
+    resizeLarge(tetraEdges, tetrahedra.size() + 1);
     std::size_t width = 0;
     for (const Block& b : blocks)
         width = std::max<std::size_t>(width, b.vertexCount);

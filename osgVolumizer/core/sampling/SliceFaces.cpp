@@ -1,3 +1,4 @@
+#include "../LargePages.h"
 #include "SliceScan.h"
 
 #include <algorithm>
@@ -7,12 +8,13 @@ namespace core {
 
 namespace {
 
-/// Makes room for `size` values without setting many more than are needed to zero.
-void growTo(std::vector<float>& values, std::size_t size)
+/// Asks for memory that is read in no order soon.
+template <class T>
+void prefetch(const T* from, std::size_t count)
 {
-    if (values.size() >= size) return;
-    if (values.capacity() < size) values.reserve(size + size / 2);
-    values.resize(std::min(values.capacity(), size + size / 16));
+    const char* p = reinterpret_cast<const char*>(from);
+    for (const char* const end = p + count * sizeof(T); p < end; p += 64)
+        __builtin_prefetch(p);
 }
 
 } // namespace
@@ -27,11 +29,18 @@ bool Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& ou
         const BlockFaces& faces = chunk.blockFaces[b - chunk.firstBlock];
         if (entry == faces.endEntry) continue;
         const TetraBlocks::Block& block = blocks.blocks[b];
+        if (b + 1 < chunk.endBlock) {
+            const TetraBlocks::Block& next = blocks.blocks[b + 1];
+            prefetch(_passed.data() + next.firstVertex, next.vertexCount);
+            prefetch(_layers.data() + next.firstVertex, next.vertexCount);
+            prefetch(blocks.record(next.firstVertex), next.vertexCount * stride);
+        }
         listPoints(blocks.edges.data() + block.firstEdge, block.edgeCount,
                    _passed.data() + block.firstVertex, chunk);
         if (!_countPoints) {
             if (chunk.vertexCount + chunk.pointCount > 0xffffffffu) return false;
-            growTo(out.faces.vertices, (chunk.vertexCount + chunk.pointCount) * stride);
+            growLarge(out.faces.vertices, (chunk.vertexCount + chunk.pointCount) * stride,
+                      chunk.vertexCount * stride);
         }
         writePoints(blocks, block, _layers.data() + block.firstVertex, faces.base, chunk,
                     out.faces.vertices.data() + chunk.vertexCount * stride);
@@ -58,6 +67,7 @@ bool Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& ou
         chunk.clippedVertex = chunk.vertexCount;
         const std::size_t values = chunk.vertexCount * stride + chunk.vertices.size();
         if (values / stride > 0xffffffffu) return false;
+        growLarge(out.faces.vertices, values, chunk.vertexCount * stride);
         out.faces.vertices.resize(values);
     }
     emitClipped(plan, chunk, out);

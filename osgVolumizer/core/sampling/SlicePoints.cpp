@@ -27,33 +27,40 @@ OSGVOLUMIZER_INLINE void interpolate4(float* to, const double* a, const double* 
     std::memcpy(to, &r, bytes);
 }
 
-/// S values per record, or any number where S is 0. Points as weighPoint() leaves them.
+/// One point of S values, or of any number where S is 0. Where ROOM, four may be written for three.
+template <int S, bool ROOM>
+OSGVOLUMIZER_INLINE void writeOne(const double* records, std::size_t size, std::uint32_t point,
+                                  double weight, float* to)
+{
+    const double* a = records + size * (point & 0xffu);
+    const double* b = records + size * (point >> 8 & 0xffu);
+    const double* nearest = records + size * (point >> 16);
+    if constexpr (S == 3) {
+        interpolate4(to, a, b, nearest, weight, ROOM ? 16 : 12);
+    } else if constexpr (S > 3) {
+        // The last group of four starts at S - 4, so that none is written beyond the record.
+        for (int k = 0; k < S; k += 4) {
+            const int at = k + 4 > S ? S - 4 : k;
+            interpolate4(to + at, a + at, b + at, nearest + at, weight, 16);
+        }
+    } else {
+        for (std::size_t k = 0; k < size; ++k)
+            to[k] = static_cast<float>(nearest[k] + weight * (b[k] - a[k]));
+    }
+}
+
+/// Points as weighPoint() leaves them.
 template <int S>
 OSGVOLUMIZER_INLINE void writeAll(const double* records, std::size_t stride,
                                   const std::uint32_t* points, const double* weights,
                                   std::size_t count, float* to)
 {
+    if (count == 0) return;
     const std::size_t size = S == 0 ? stride : S;
-    for (std::size_t i = 0; i < count; ++i, to += size) {
-        const std::uint32_t point = points[i];
-        const double* a = records + size * (point & 0xffu);
-        const double* b = records + size * (point >> 8 & 0xffu);
-        const double* nearest = records + size * (point >> 16);
-        const double weight = weights[i];
-        if constexpr (S == 3) {
-            // The fourth value is overwritten by the next point, but not at the end.
-            interpolate4(to, a, b, nearest, weight, i + 1 < count ? 16 : 12);
-        } else if constexpr (S > 3) {
-            // The last group of four starts at S - 4, so that none is written beyond the record.
-            for (int k = 0; k < S; k += 4) {
-                const int at = k + 4 > S ? S - 4 : k;
-                interpolate4(to + at, a + at, b + at, nearest + at, weight, 16);
-            }
-        } else {
-            for (std::size_t k = 0; k < size; ++k)
-                to[k] = static_cast<float>(nearest[k] + weight * (b[k] - a[k]));
-        }
-    }
+    // A fourth value is overwritten by the next point; the last has none.
+    for (std::size_t i = 0; i + 1 < count; ++i, to += size)
+        writeOne<S, true>(records, size, points[i], weights[i], to);
+    writeOne<S, false>(records, size, points[count - 1], weights[count - 1], to);
 }
 
 OSGVOLUMIZER_INLINE void writeAny(const double* records, std::size_t stride,
@@ -104,7 +111,7 @@ void writePoints(const TetraBlocks& blocks, const TetraBlocks::Block& block, con
 {
     const double* records = blocks.record(block.firstVertex);
     const std::size_t stride = blocks.recordSize(), count = chunk.pointCount;
-    reserveMore(chunk.weights, count);
+    growLarge(chunk.weights, count);
     std::uint32_t* const points = chunk.points.data();
     double* const weights = chunk.weights.data();
 #if defined(OSGVOLUMIZER_DISPATCH_AVX2)

@@ -41,7 +41,7 @@ void listFace(const TetraBlocks::Tetra& v, std::uint32_t t, const int* passed, S
             (a > k ? 1u : 0u) | (b > k ? 2u : 0u) | (c > k ? 4u : 0u) | (d > k ? 8u : 0u);
         return static_cast<std::uint32_t>(k) << 14 | t << 4 | mask;
     };
-    reserveMore(chunk.entries, chunk.entryCount + n + 2);
+    growLarge(chunk.entries, chunk.entryCount + n + 2, chunk.entryCount);
     std::uint32_t* e = chunk.entries.data() + chunk.entryCount;
     e[0] = entry(low);
     e[1] = entry(low + 1);
@@ -57,7 +57,7 @@ void listEdge(const TetraBlocks::Edge& e, std::uint32_t i, const int* passed, Sl
     const auto n = static_cast<std::uint32_t>(std::abs(a - b));
     const std::uint32_t ends =
         a < b ? e.a | std::uint32_t(e.b) << 8 : e.b | std::uint32_t(e.a) << 8;
-    reserveMore(chunk.points, chunk.pointCount + n + 2);
+    growLarge(chunk.points, chunk.pointCount + n + 2, chunk.pointCount);
     std::uint32_t* to = chunk.points.data() + chunk.pointCount;
     to[0] = low << 16 | ends;
     to[1] = (low + 1) << 16 | ends;
@@ -94,7 +94,7 @@ std::size_t countPoints(const TetraBlocks::Edge* edges, std::uint32_t count, con
 void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed,
                 Slicer::Chunk& chunk)
 {
-    reserveMore(chunk.edgePoints, count);
+    growLarge(chunk.edgePoints, count);
     chunk.pointCount = 0;
 #if defined(OSGVOLUMIZER_DISPATCH_AVX2)
     if (avx2::available()) {

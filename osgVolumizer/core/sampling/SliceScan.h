@@ -1,5 +1,6 @@
 #pragma once
 
+#include "../LargePages.h"
 #include "Slicer.h"
 #include "TetraCases.h"
 
@@ -29,13 +30,6 @@ struct PassedRange
 {
     int lowest, highest;
 };
-
-/// Room for `size` numbers; the contents beyond those in use are of no interest.
-template <class T>
-void reserveMore(std::vector<T>& list, std::size_t size)
-{
-    if (list.size() < size) list.resize(2 * size + 1024);
-}
 
 /// Fills in the layer coordinates of a block's vertices, and how many surfaces from `base` on,
 /// `end` excluded, each has passed.

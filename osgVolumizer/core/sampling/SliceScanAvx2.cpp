@@ -13,6 +13,9 @@ namespace avx2 {
 
 namespace {
 
+// How far ahead of their use memory is asked for, in bytes.
+constexpr std::size_t READ_AHEAD = 1024, WRITE_AHEAD = 256;
+
 /// Which of four numbers are greater than k, as bits.
 OSGVOLUMIZER_AVX2 inline __m256i beyond(__m256i a, __m256i b, __m256i c, __m256i d, __m256i k)
 {
@@ -102,6 +105,7 @@ OSGVOLUMIZER_AVX2 void emit(const Emission& in)
     for (const std::uint32_t* entry = in.entries; entry != end; ++entry) {
         const std::uint32_t e = *entry, t = e >> 4 & 0x3ffu;
         const std::size_t surface = e >> 14, which = e & 15u;
+        __builtin_prefetch(tetraEdges + t + READ_AHEAD / sizeof(TetraBlocks::TetraEdges));
         const __m128i edges = _mm_shuffle_epi8(
             _mm_loadu_si128(reinterpret_cast<const __m128i*>(tetraEdges + t)),
             _mm_load_si128(reinterpret_cast<const __m128i*>(&CORNER_BYTES[which])));
@@ -112,6 +116,8 @@ OSGVOLUMIZER_AVX2 void emit(const Emission& in)
         const Slicer::Count cursor = cursors[bin], next = cursor + FACE_COUNTS[which];
         cursors[bin] = next;
         faceOffsets[Slicer::faceCount(cursor)] = Slicer::indexCount(cursor);
+        __builtin_prefetch(
+            indices + Slicer::indexCount(cursor) + WRITE_AHEAD / sizeof(std::uint32_t), 1);
         _mm_storel_epi64(reinterpret_cast<__m128i*>(indices + Slicer::indexCount(cursor)), corners);
         _mm_storeh_pd(reinterpret_cast<double*>(indices + Slicer::indexCount(next) - 2),
                       _mm_castsi128_pd(corners));
@@ -141,6 +147,7 @@ OSGVOLUMIZER_AVX2 PassedRange listLayers(const SlicePlan& plan, const double* re
     __m128i lowest = _mm_set1_epi32(end - base), highest = _mm_setzero_si128();
     std::uint32_t i = 0;
     for (; i + 4 <= count; i += 4, field += 4 * stride) {
+        __builtin_prefetch(field + READ_AHEAD / sizeof(double));
         // Four positions and whatever follows them, transposed.
         const __m256d p = _mm256_loadu_pd(field), q = _mm256_loadu_pd(field + stride),
                       r = _mm256_loadu_pd(field + 2 * stride),
@@ -183,6 +190,7 @@ OSGVOLUMIZER_AVX2 void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint
     const __m256i byte = _mm256_set1_epi32(0xff);
     for (; t + 8 <= end; t += 8) {
         const __m256i v = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(tetrahedra + t));
+        __builtin_prefetch(tetrahedra + t + READ_AHEAD / sizeof(TetraBlocks::Tetra));
         const __m256i a = _mm256_i32gather_epi32(passed, _mm256_and_si256(v, byte), 4);
         const __m256i b =
             _mm256_i32gather_epi32(passed, _mm256_and_si256(_mm256_srli_epi32(v, 8), byte), 4);
@@ -206,7 +214,7 @@ OSGVOLUMIZER_AVX2 void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint
                                               beyond(a, b, c, d, low));
         const __m256i second = _mm256_or_si256(_mm256_or_si256(number, _mm256_slli_epi32(next, 14)),
                                                beyond(a, b, c, d, next));
-        reserveMore(chunk.entries, chunk.entryCount + 24);
+        growLarge(chunk.entries, chunk.entryCount + 24, chunk.entryCount);
         const __m256i sum = runningSum(n);
         writePairs(first, second, _mm256_sub_epi32(sum, n),
                    chunk.entries.data() + chunk.entryCount);
@@ -241,6 +249,7 @@ OSGVOLUMIZER_AVX2 void listPoints(const TetraBlocks::Edge* edges, std::uint32_t 
 {
     std::uint32_t i = 0;
     for (; i + 8 <= count; i += 8) {
+        __builtin_prefetch(edges + i + READ_AHEAD / sizeof(TetraBlocks::Edge));
         const EightEdges e(edges + i, passed);
         const __m256i low = _mm256_min_epi32(e.passedA, e.passedB);
         const __m256i n = _mm256_sub_epi32(_mm256_max_epi32(e.passedA, e.passedB), low);
@@ -260,7 +269,7 @@ OSGVOLUMIZER_AVX2 void listPoints(const TetraBlocks::Edge* edges, std::uint32_t 
         _mm256_storeu_si256(
             reinterpret_cast<__m256i*>(chunk.edgePoints.data() + i),
             _mm256_sub_epi32(_mm256_add_epi32(before, _mm256_set1_epi32(first)), low));
-        reserveMore(chunk.points, chunk.pointCount + 24);
+        growLarge(chunk.points, chunk.pointCount + 24, chunk.pointCount);
         writePairs(point, _mm256_add_epi32(point, _mm256_set1_epi32(0x10000)), before,
                    chunk.points.data() + chunk.pointCount);
         chunk.pointCount += static_cast<std::uint32_t>(_mm256_extract_epi32(sum, 7));

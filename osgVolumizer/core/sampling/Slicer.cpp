@@ -1,3 +1,4 @@
+#include "../LargePages.h"
 #include "SliceScan.h"
 
 #include <algorithm>
@@ -168,9 +169,9 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
     }
     if (indices > 0xffffffffu || vertices > 0xffffffffu) return false;
     out.faces.format = plan.blocks->format();
-    if (_countPoints) out.faces.vertices.resize(vertices * stride);
-    out.faces.indices.resize(indices);
-    out.faces.faceOffsets.resize(faces + 1);
+    if (_countPoints) resizeLarge(out.faces.vertices, vertices * stride);
+    resizeLarge(out.faces.indices, indices);
+    resizeLarge(out.faces.faceOffsets, faces + 1);
     out.faceSpacings.resize(plan.primitive ? faces : 0);
     out.ranges.resize(static_cast<std::size_t>(plan.surfaceCount) *
                       static_cast<std::size_t>(plan.brickCount));
@@ -229,8 +230,8 @@ try {
         else
             executor->run(static_cast<int>(chunkCount), std::cref(task));
     };
-    _passed.resize(plan.blocks->sourceVertices.size());
-    _layers.resize(_passed.size());
+    resizeLarge(_passed, plan.blocks->sourceVertices.size());
+    resizeLarge(_layers, plan.blocks->sourceVertices.size());
     // One chunk appends its points as it goes; several have to know where each begins.
     _countPoints = chunkCount > 1;
     forAll([&](int c) { countChunk(plan, _chunks[static_cast<std::size_t>(c)]); });

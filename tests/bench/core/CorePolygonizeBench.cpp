@@ -92,7 +92,8 @@ void run(benchmark::State& state, TetraSet tetra, const std::vector<Box3d>& boxe
 
 void gridV3F(benchmark::State& state)
 {
-    run(state, testing::makeGrid(64, 64.0), {}, {}, static_cast<int>(state.range(0)));
+    const int nn = getenv("NN") ? atoi(getenv("NN")) : 64;
+    run(state, testing::makeGrid(nn, nn), {}, {}, static_cast<int>(state.range(0)));
 }
 BENCHMARK(gridV3F)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 
