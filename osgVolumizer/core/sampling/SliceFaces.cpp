@@ -35,6 +35,7 @@ bool Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& ou
             prefetch(_layers.data() + next.firstVertex, next.vertexCount);
             prefetch(blocks.record(next.firstVertex), next.vertexCount * stride);
         }
+        packPassed(_passed.data() + block.firstVertex, faces.highest, chunk);
         listPoints(blocks.edges.data() + block.firstEdge, block.edgeCount,
                    _passed.data() + block.firstVertex, chunk);
         if (!_countPoints) {

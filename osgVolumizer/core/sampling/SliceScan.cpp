@@ -31,6 +31,18 @@ PassedRange listLayers(const SlicePlan& plan, const TetraBlocks::Block& block, i
     return range;
 }
 
+void packPassed(const int* passed, int highest, Slicer::Chunk& chunk)
+{
+    chunk.hasPassedBytes = false;
+#if defined(OSGVOLUMIZER_DISPATCH_AVX2)
+    if (highest > 0xff || !avx512::available()) return;
+    avx512::packPassed(passed, chunk);
+    chunk.hasPassedBytes = true;
+#else
+    (void)passed, (void)highest;
+#endif
+}
+
 void listFace(const TetraBlocks::Tetra& v, std::uint32_t t, const int* passed, Slicer::Chunk& chunk)
 {
     const int a = passed[v.v[0]], b = passed[v.v[1]], c = passed[v.v[2]], d = passed[v.v[3]];
@@ -71,8 +83,10 @@ void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t first, std::u
                const int* passed, Slicer::Chunk& chunk)
 {
 #if defined(OSGVOLUMIZER_DISPATCH_AVX2)
+    const std::uint32_t end = first + count;
+    if (chunk.hasPassedBytes) first = avx512::listFaces(tetrahedra, first, end, passed, chunk);
     if (avx2::available()) {
-        avx2::listFaces(tetrahedra, first, first + count, passed, chunk);
+        avx2::listFaces(tetrahedra, first, end, passed, chunk);
         return;
     }
 #endif
@@ -97,6 +111,12 @@ void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* 
     growLarge(chunk.edgePoints, count);
     chunk.pointCount = 0;
 #if defined(OSGVOLUMIZER_DISPATCH_AVX2)
+    if (chunk.hasPassedBytes) {
+        std::uint32_t i = avx512::listPoints(edges, count, passed, chunk);
+        for (; i < count; ++i)
+            listEdge(edges[i], i, passed, chunk);
+        return;
+    }
     if (avx2::available()) {
         avx2::listPoints(edges, count, passed, chunk);
         return;

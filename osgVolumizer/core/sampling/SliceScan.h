@@ -6,8 +6,8 @@
 
 #include <array>
 
-// The inner loops of Slicer. Each comes in two forms with the same results to the bit: plain C++,
-// and AVX2 intrinsics that are taken where the processor has them.
+// The inner loops of Slicer: in plain C++, and with AVX2 and AVX-512 where the processor has them.
+// All make the same faces of the same points to the bit; only the order of faces in a bin differs.
 #if defined(__x86_64__)
 #define OSGVOLUMIZER_DISPATCH_AVX2 1
 #define OSGVOLUMIZER_AVX2 __attribute__((target("avx2")))
@@ -32,9 +32,13 @@ struct PassedRange
 };
 
 /// Fills in the layer coordinates of a block's vertices, and how many surfaces from `base` on,
-/// `end` excluded, each has passed.
+/// `end` excluded, each has passed. Expects room for TetraBlocks::MAX_VERTICES in `passed`.
 PassedRange listLayers(const SlicePlan& plan, const TetraBlocks::Block& block, int base, int end,
                        double* layers, int* passed);
+
+/// To be called before listFaces() and listPoints() of a block.
+/// \param highest the largest of the numbers that count
+void packPassed(const int* passed, int highest, Slicer::Chunk& chunk);
 
 /// Appends an entry to the chunk for every surface that meets one of `count` tetrahedra of a block,
 /// beginning with number `first`. `passed` belongs to the block's vertices.
@@ -82,6 +86,18 @@ void weighPoints(const double* layers, int base, std::size_t count, std::uint32_
 void emitFaces(const Emission& emission);
 
 } // namespace avx2
+
+namespace avx512 {
+
+/// VBMI, which looks up bytes, and what comes with it: Ice Lake, Zen 4 and later.
+bool available();
+void packPassed(const int* passed, Slicer::Chunk& chunk);
+std::uint32_t listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t first,
+                        std::uint32_t end, const int* passed, Slicer::Chunk& chunk);
+std::uint32_t listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed,
+                         Slicer::Chunk& chunk);
+
+} // namespace avx512
 #endif
 
 // One of each, for what is left over after groups of four or eight.

@@ -62,12 +62,14 @@ void Slicer::depthRange(const SlicePlan& plan, const TetraBlocks::Block& block, 
     farthest = middle + half;
 }
 
-int Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, const TetraBlocks::Block& block)
+Slicer::BlockFaces Slicer::countBlock(const SlicePlan& plan, Chunk& chunk,
+                                      const TetraBlocks::Block& block)
 {
     const TetraBlocks& blocks = *plan.blocks;
     int base = plan.firstSurface, end = base + plan.surfaceCount;
-    if (block.place == TetraBlocks::OUTSIDE) return base;
-    if (!plan.visible.empty() && outside(block.bounds, plan.visible)) return base;
+    if (block.place == TetraBlocks::OUTSIDE) return {chunk.entryCount, base, 0};
+    if (!plan.visible.empty() && outside(block.bounds, plan.visible))
+        return {chunk.entryCount, base, 0};
     double nearest, farthest;
     depthRange(plan, block, nearest, farthest);
     const double layerMargin = 1e-9; // of a layer, for the rounding of what follows
@@ -77,13 +79,14 @@ int Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, const TetraBlocks::B
         base =
             surfacesPassed((plan.lattice.farDepth - farthest) * scale - layerMargin, first, last);
         end = surfacesPassed((plan.lattice.farDepth - nearest) * scale + layerMargin, first, last);
-        if (base == end) return base;
+        if (base == end) return {chunk.entryCount, base, 0};
     }
     double* layers = _layers.data() + block.firstVertex;
     int* passed = _passed.data() + block.firstVertex;
     const PassedRange range = listLayers(plan, block, base, end, layers, passed);
-    if (range.lowest >= range.highest && !plan.primitive) return base;
+    if (range.lowest >= range.highest && !plan.primitive) return {chunk.entryCount, base, 0};
 
+    packPassed(passed, range.highest, chunk);
     const std::size_t start = chunk.entryCount;
     const bool general = plan.general() || range.highest > MAX_BLOCK_SURFACES;
     const TetraBlocks::Tetra* tetra = blocks.tetrahedra.data() + block.firstTetra;
@@ -108,7 +111,7 @@ int Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, const TetraBlocks::B
     if (_countPoints && chunk.entryCount > start)
         chunk.vertexCount +=
             countPoints(blocks.edges.data() + block.firstEdge, block.edgeCount, passed);
-    return base;
+    return {chunk.entryCount, base, range.highest};
 }
 
 void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
@@ -129,10 +132,10 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
     for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
         const TetraBlocks::Block& block = blocks.blocks[b];
         const std::size_t start = chunk.entryCount;
-        const int base = countBlock(plan, chunk, block);
-        chunk.blockFaces.push_back({chunk.entryCount, base});
-        Count* counts =
-            chunk.fast.data() + static_cast<std::size_t>(base - plan.firstSurface) * brickCount;
+        const BlockFaces faces = countBlock(plan, chunk, block);
+        chunk.blockFaces.push_back(faces);
+        Count* counts = chunk.fast.data() +
+                        static_cast<std::size_t>(faces.base - plan.firstSurface) * brickCount;
         const std::uint32_t* entry = chunk.entries.data() + start;
         const std::uint32_t* const end = chunk.entries.data() + chunk.entryCount;
         if (block.place != TetraBlocks::CLIP) {
@@ -230,7 +233,8 @@ try {
         else
             executor->run(static_cast<int>(chunkCount), std::cref(task));
     };
-    resizeLarge(_passed, plan.blocks->sourceVertices.size());
+    // Some more, so that the last block's may be read in groups as well.
+    resizeLarge(_passed, plan.blocks->sourceVertices.size() + TetraBlocks::MAX_VERTICES);
     resizeLarge(_layers, plan.blocks->sourceVertices.size());
     // One chunk appends its points as it goes; several have to know where each begins.
     _countPoints = chunkCount > 1;

@@ -7,6 +7,7 @@
 #include "Polygonize.h"
 #include "SurfaceFamily.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -89,6 +90,7 @@ public:
     {
         std::size_t endEntry = 0; ///< in Chunk::entries
         int base = 0;             ///< the surface that entries and points count from
+        int highest = 0;          ///< the most that a vertex has passed, from there on
     };
     /// A block that spans more surfaces takes the general way, so that 16 bits hold the number.
     static constexpr int MAX_BLOCK_SURFACES = 0xffff;
@@ -116,11 +118,15 @@ public:
         std::size_t pointCount = 0;
         std::vector<std::uint32_t> edgePoints;
         std::vector<double> weights;
+        /// How many surfaces the block's vertices have passed, where all numbers fit into bytes and
+        /// the processor can look them up; see packPassed().
+        alignas(64) std::array<std::uint8_t, TetraBlocks::MAX_VERTICES> passedBytes;
+        bool hasPassedBytes = false;
     };
 
 private:
     void countChunk(const SlicePlan& plan, Chunk& chunk);
-    int countBlock(const SlicePlan& plan, Chunk& chunk, const TetraBlocks::Block& block);
+    BlockFaces countBlock(const SlicePlan& plan, Chunk& chunk, const TetraBlocks::Block& block);
     bool placeBins(const SlicePlan& plan, std::size_t chunkCount, PolygonizedFaces& out);
     bool emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
     void emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
