@@ -116,7 +116,9 @@ void writePoints(const TetraBlocks& blocks, const TetraBlocks::Block& block, con
     double* const weights = chunk.weights.data();
 #if defined(OSGVOLUMIZER_DISPATCH_AVX2)
     if (avx2::available()) {
-        avx2::weighPoints(layers, base, count, points, weights);
+        const std::size_t done =
+            avx512::available() ? avx512::weighPoints(layers, base, count, points, weights) : 0;
+        avx2::weighPoints(layers, base, count - done, points + done, weights + done);
         writeAvx2(records, stride, points, weights, count, to);
         return;
     }

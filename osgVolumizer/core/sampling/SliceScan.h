@@ -96,6 +96,8 @@ std::uint32_t listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t firs
                         std::uint32_t end, const int* passed, Slicer::Chunk& chunk);
 std::uint32_t listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed,
                          Slicer::Chunk& chunk);
+std::size_t weighPoints(const double* layers, int base, std::size_t count, std::uint32_t* points,
+                        double* weights);
 
 } // namespace avx512
 #endif

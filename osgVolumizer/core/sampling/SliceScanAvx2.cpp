@@ -118,6 +118,7 @@ OSGVOLUMIZER_AVX2 void emit(const Emission& in)
         faceOffsets[Slicer::faceCount(cursor)] = Slicer::indexCount(cursor);
         __builtin_prefetch(
             indices + Slicer::indexCount(cursor) + WRITE_AHEAD / sizeof(std::uint32_t), 1);
+        __builtin_prefetch(faceOffsets + Slicer::faceCount(cursor) + 32, 1);
         _mm_storel_epi64(reinterpret_cast<__m128i*>(indices + Slicer::indexCount(cursor)), corners);
         _mm_storeh_pd(reinterpret_cast<double*>(indices + Slicer::indexCount(next) - 2),
                       _mm_castsi128_pd(corners));

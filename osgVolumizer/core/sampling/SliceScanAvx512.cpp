@@ -177,6 +177,33 @@ OSGVOLUMIZER_AVX512 std::uint32_t listPoints(const TetraBlocks::Edge* edges, std
     return i;
 }
 
+OSGVOLUMIZER_AVX512 std::size_t weighPoints(const double* layers, int base, std::size_t count,
+                                            std::uint32_t* points, double* weights)
+{
+    const __m256i byte = _mm256_set1_epi32(0xff);
+    const __m512d origin = _mm512_set1_pd(base + 0.5), half = _mm512_set1_pd(0.5),
+                  one = _mm512_set1_pd(1.0);
+    std::size_t i = 0;
+    for (; i + 8 <= count; i += 8) {
+        const __m256i p = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(points + i));
+        const __m256i a = _mm256_and_si256(p, byte);
+        const __m256i b = _mm256_and_si256(_mm256_srli_epi32(p, 8), byte);
+        const __m512d farLayer = _mm512_i32gather_pd(a, layers, 8);
+        const __m512d nearLayer = _mm512_i32gather_pd(b, layers, 8);
+        const __m512d surface = _mm512_add_pd(_mm512_cvtepi32_pd(_mm256_srli_epi32(p, 16)), origin);
+        const __m512d t =
+            _mm512_div_pd(_mm512_sub_pd(surface, farLayer), _mm512_sub_pd(nearLayer, farLayer));
+        const __mmask8 nearFar = _mm512_cmp_pd_mask(t, half, _CMP_LT_OQ);
+        _mm512_storeu_pd(weights + i,
+                         _mm512_mask_sub_pd(t, static_cast<__mmask8>(~nearFar), t, one));
+        const __m256i nearest = _mm256_mask_blend_epi32(nearFar, b, a);
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(points + i),
+                            _mm256_or_si256(_mm256_and_si256(p, _mm256_set1_epi32(0xffff)),
+                                            _mm256_slli_epi32(nearest, 16)));
+    }
+    return i;
+}
+
 } // namespace avx512
 } // namespace core
 } // namespace osgVolumizer
