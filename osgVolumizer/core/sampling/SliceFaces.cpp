@@ -64,13 +64,7 @@ bool Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& ou
         emitFaces(emission);
         entry = faces.endEntry;
     }
-    if (!_countPoints) {
-        chunk.clippedVertex = chunk.vertexCount;
-        const std::size_t values = chunk.vertexCount * stride + chunk.vertices.size();
-        if (values / stride > 0xffffffffu) return false;
-        growLarge(out.faces.vertices, values, chunk.vertexCount * stride);
-        out.faces.vertices.resize(values);
-    }
+    if (!_countPoints) out.faces.vertices.resize(chunk.vertexCount * stride);
     emitClipped(plan, chunk, out);
     return true;
 }
@@ -78,9 +72,9 @@ bool Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& ou
 void Slicer::emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
 {
     const std::size_t stride = plan.blocks->recordSize();
-    std::copy(chunk.vertices.begin(), chunk.vertices.end(),
-              out.faces.vertices.begin() +
-                  static_cast<std::ptrdiff_t>(chunk.clippedVertex * stride));
+    if (_countPoints)
+        std::copy_n(chunk.vertices.data(), chunk.valueCount,
+                    out.faces.vertices.data() + chunk.clippedVertex * stride);
     auto vertex = static_cast<std::uint32_t>(chunk.clippedVertex);
     for (std::size_t f = 0; f < chunk.bins.size(); ++f) {
         Count& cursor = chunk.clipped[chunk.bins[f]];

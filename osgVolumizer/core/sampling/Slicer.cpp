@@ -149,7 +149,7 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
     chunk.blockFaces.clear();
     chunk.bins.clear();
     chunk.sizes.clear();
-    chunk.vertices.clear();
+    chunk.valueCount = 0;
     chunk.spacings.clear();
     const TetraBlocks& blocks = *plan.blocks;
     const auto brickCount = static_cast<std::size_t>(plan.brickCount);
@@ -185,13 +185,13 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
             indices += indexCount(n), faces += faceCount(n);
         for (const Count n : _chunks[c].clipped)
             indices += indexCount(n), faces += faceCount(n);
+        _chunks[c].clippedVertex = vertices;
+        vertices += _chunks[c].valueCount / stride;
+    }
+    for (std::size_t c = 0; c < chunkCount; ++c) {
         const std::size_t own = _chunks[c].vertexCount;
         _chunks[c].vertexCount = vertices;
         vertices += own;
-    }
-    for (std::size_t c = 0; c < chunkCount; ++c) {
-        _chunks[c].clippedVertex = vertices;
-        vertices += _chunks[c].vertices.size() / stride;
     }
     if (indices > 0xffffffffu || vertices > 0xffffffffu) return false;
     out.faces.format = plan.blocks->format();
@@ -259,9 +259,12 @@ try {
     // Some more, so that the last block's may be read in groups as well.
     resizeLarge(_passed, plan.blocks->sourceVertices.size() + TetraBlocks::MAX_VERTICES);
     resizeLarge(_layers, plan.blocks->sourceVertices.size());
-    // One chunk appends its points as it goes; several have to know where each begins.
+    // One chunk puts its points into their place as it goes; several have to know where each
+    // begins. Those of clipped faces come first.
     _countPoints = chunkCount > 1;
+    if (!_countPoints) _chunks[0].vertices.swap(out.faces.vertices);
     forAll([&](int c) { countChunk(plan, _chunks[static_cast<std::size_t>(c)]); });
+    if (!_countPoints) _chunks[0].vertices.swap(out.faces.vertices);
     bool fits = placeBins(plan, chunkCount, out);
     if (fits && chunkCount == 1)
         fits = emitChunk(plan, _chunks[0], out);

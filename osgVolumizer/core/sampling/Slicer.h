@@ -106,12 +106,15 @@ public:
         std::vector<Count> fast, clipped;   ///< per bin: first counts, then cursors
         std::size_t vertexCount = 0;        ///< shared points, first their number, then the next
         std::size_t clippedVertex = 0;      ///< where the points of clipped faces begin
-        // Faces that were clipped, in the order of making.
+        // Faces that were clipped, in the order of making. The vertices of a chunk that is alone
+        // are in their place already.
         std::vector<std::uint32_t> bins;
         std::vector<std::uint16_t> sizes;
         std::vector<float> vertices;
+        std::size_t valueCount = 0; ///< in `vertices`
         std::vector<float> spacings;
-        RecordPolygon whole, part, uncut;
+        RecordPolygon polygon;
+        RecordPolygon::Shape whole, uncut; ///< before it is cut to a box, and to a piece
         /// Scratch of one block: its points (surface << 16 | near vertex << 8 | far vertex), and
         /// for each edge the number of its point on surface 0, if it had one.
         std::vector<std::uint32_t> points;
