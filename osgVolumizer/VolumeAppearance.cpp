@@ -33,7 +33,8 @@ VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp&
       _interpolation(o._interpolation), _lookup(o._lookup), _exactFiltering(o._exactFiltering),
       _rayFunction(o._rayFunction), _isoValue(o._isoValue), _shading(o._shading),
       _material(o._material), _gradients(o._gradients), _accumulationBits(o._accumulationBits),
-      _sampling(o._sampling), _opacityUnit(o._opacityUnit),
+      _sampling(o._sampling), _errorTolerance(o._errorTolerance),
+      _targetFrameTime(o._targetFrameTime), _opacityUnit(o._opacityUnit),
       _tableTextures(new render::TableTextures)
 {
 }
@@ -102,6 +103,22 @@ Status VolumeAppearance::setMaximumSamples(int count)
 {
     if (count < 1) return refuse(*this, "maximum of samples", count, "at least 1");
     _sampling.maximumSamples = count;
+    return {};
+}
+
+Status VolumeAppearance::setErrorTolerance(double rootMeanSquare)
+{
+    if (!(rootMeanSquare >= 0.0) || !std::isfinite(rootMeanSquare))
+        return refuse(*this, "error tolerance", rootMeanSquare, "0 (off) or a positive number");
+    _errorTolerance = rootMeanSquare;
+    return {};
+}
+
+Status VolumeAppearance::setTargetFrameTime(double seconds)
+{
+    if (!(seconds >= 0.0) || !std::isfinite(seconds))
+        return refuse(*this, "target frame time", seconds, "0 (off) or a positive time");
+    _targetFrameTime = seconds;
     return {};
 }
 

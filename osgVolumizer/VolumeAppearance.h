@@ -17,15 +17,14 @@ class TableTextures;
 class OSGVOLUMIZER_EXPORT VolumeAppearance : public osg::Group
 {
 public:
-    META_Node(osgVolumizer, VolumeAppearance)
-
-        /// Slabs: exact segments, second order. Slices: one polygon per sampling surface, first
-        /// order. AUTOMATIC takes slabs wherever the geometry is convex.
-        enum Technique {
-            AUTOMATIC,
-            SLICES,
-            SLABS
-        };
+    /// Slabs: exact segments, second order. Slices: one polygon per sampling surface, first
+    /// order. AUTOMATIC takes slabs wherever the geometry is convex.
+    enum Technique
+    {
+        AUTOMATIC,
+        SLICES,
+        SLABS
+    };
     /// How a value between samples comes about. NEAREST: that of the nearest sample. LINEAR:
     /// trilinear. CUBIC: passes through the samples like LINEAR, with continuous derivatives and
     /// third-order accuracy, and may overshoot (Keys, "Cubic convolution interpolation for digital
@@ -94,6 +93,8 @@ public:
         PRECOMPUTED
     };
 
+    META_Node(osgVolumizer, VolumeAppearance);
+
     VolumeAppearance();
     VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
@@ -158,6 +159,16 @@ public:
     int getMaximumSamples() const { return _sampling.maximumSamples; }
     const core::SamplingParameters& getSamplingParameters() const { return _sampling; }
 
+    /// The root mean square error, in units of full intensity, that sampling may make in a picture;
+    /// then period and table are chosen from the data and the table, and the sampling period is not
+    /// used. 0 (default): as the period says. Composited slabs without shading only.
+    Status setErrorTolerance(double rootMeanSquare);
+    double getErrorTolerance() const { return _errorTolerance; }
+    /// Seconds that a frame may take while the view moves: the period is lengthened until it does,
+    /// and is what was asked for again once the view rests. 0 (default): always what was asked for.
+    Status setTargetFrameTime(double seconds);
+    double getTargetFrameTime() const { return _targetFrameTime; }
+
     /// Thickness, in object units, of the layer that the table's opacity is stated for; 0 (default)
     /// takes the voxels' mean spacing.
     Status setOpacityUnit(double objectUnits);
@@ -188,6 +199,7 @@ private:
     Gradients _gradients = ON_THE_FLY;
     int _accumulationBits = 32;
     core::SamplingParameters _sampling;
+    double _errorTolerance = 0.0, _targetFrameTime = 0.0;
     double _opacityUnit = 0.0;
     std::unique_ptr<render::TableTextures> _tableTextures;
 };

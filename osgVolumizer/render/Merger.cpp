@@ -203,8 +203,10 @@ void Merger::report(const FrameCounts& counts) const
         {"osgVolumizer volume leaves", counts.volumeLeaves},
         {"osgVolumizer surface pieces", counts.surfacePieces},
         {"osgVolumizer intervals", counts.intervals}};
+    osg::ref_ptr<const osg::Camera> camera;
+    if (!_camera.lock(camera)) return;
     for (const auto& value : values)
-        count(_camera, _frameStamp, value.first, value.second);
+        count(camera, _frameStamp, value.first, value.second);
 }
 
 } // namespace render

@@ -4,6 +4,7 @@
 
 #include <osg/Camera>
 #include <osg/FrameStamp>
+#include <osg/observer_ptr>
 #include <osgUtil/RenderBin>
 
 #include <memory>
@@ -37,7 +38,7 @@ private:
 
     std::vector<std::unique_ptr<VolumeInstance>> _volumes;
     osg::ref_ptr<osgUtil::RenderBin::SortCallback> _chained;
-    osg::ref_ptr<const osg::Camera> _camera;
+    osg::observer_ptr<const osg::Camera> _camera; ///< holds the bin, and so this
     osg::ref_ptr<const osg::FrameStamp> _frameStamp;
     osg::ref_ptr<const osg::Viewport> _viewport;
 };

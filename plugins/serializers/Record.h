@@ -44,7 +44,8 @@ public:
     /// The version of our format that is written, and the newest that can be read. Independent of
     /// OSG's.
     /// 2: VolumeAppearance has Lookup and ExactFiltering.
-    static constexpr int version = 2;
+    /// 3: VolumeAppearance has ray functions, shading, and what its accuracy and time are to be.
+    static constexpr int version = 3;
 
     const std::vector<Field>& fields() const { return _fields; }
     void add(std::string name, Field::Value value, std::size_t valuesPerLine = 8)

@@ -72,6 +72,30 @@ Status getNumbers(const Record& record, const char* name, std::size_t count, dou
     return status;
 }
 
+/// One number of at least `low`, or above it.
+template <auto Get, auto Set>
+Property number(const char* name, double low, bool above = false)
+{
+    return {name, [](const VolumeAppearance& a) { return Field::Doubles{(a.*Get)()}; },
+            [name, low, above](const Record& record, VolumeAppearance& a) {
+                Field::Doubles value;
+                const Status status = getNumbers(record, name, 1, low, above, value);
+                return status.ok() ? (a.*Set)(value[0]) : status;
+            }};
+}
+
+template <auto Get, auto Set>
+Property integer(const char* name)
+{
+    return {name, [](const VolumeAppearance& a) { return Field::Integers{(a.*Get)()}; },
+            [name](const Record& record, VolumeAppearance& a) {
+                int value = 0;
+                const Status status =
+                    record.getInteger(name, 1, std::numeric_limits<int>::max(), value);
+                return status.ok() ? (a.*Set)(value) : status;
+            }};
+}
+
 Property samplingPeriod()
 {
     return {"SamplingPeriod",
@@ -86,26 +110,33 @@ Property samplingPeriod()
             }};
 }
 
-Property maximumSamples()
+Property material()
 {
-    return {"MaximumSamples",
-            [](const VolumeAppearance& a) { return Field::Integers{a.getMaximumSamples()}; },
+    return {"Material",
+            [](const VolumeAppearance& a) {
+                const VolumeAppearance::Material& m = a.getMaterial();
+                return Field::Doubles{m.ambient, m.diffuse, m.specular, m.shininess};
+            },
             [](const Record& record, VolumeAppearance& a) {
-                int n = 0;
-                const Status status =
-                    record.getInteger("MaximumSamples", 1, std::numeric_limits<int>::max(), n);
-                return status.ok() ? a.setMaximumSamples(n) : status;
+                Field::Doubles m;
+                const Status status = getNumbers(record, "Material", 4, 0.0, false, m);
+                return status.ok() ? a.setMaterial({m[0], m[1], m[2], m[3]}) : status;
             }};
 }
 
-Property opacityUnit()
+Property accumulationBits()
 {
-    return {"OpacityUnit",
-            [](const VolumeAppearance& a) { return Field::Doubles{a.getOpacityUnit()}; },
+    return {"AccumulationBits",
+            [](const VolumeAppearance& a) { return Field::Integers{a.getAccumulationBits()}; },
             [](const Record& record, VolumeAppearance& a) {
-                Field::Doubles unit;
-                const Status status = getNumbers(record, "OpacityUnit", 1, 0.0, false, unit);
-                return status.ok() ? a.setOpacityUnit(unit[0]) : status;
+                Field::Integers bits;
+                const Status status = record.get("AccumulationBits", 1, bits);
+                if (!status.ok()) return status;
+                if (bits[0] == 8 || bits[0] == 16 || bits[0] == 32)
+                    return a.setAccumulationBits(static_cast<int>(bits[0]));
+                return Status(ErrorCode::VALUE_INVALID, "field AccumulationBits is " +
+                                                            std::to_string(bits[0]) +
+                                                            ", expected 8, 16 or 32");
             }};
 }
 
@@ -114,6 +145,9 @@ const char* const interpolationNames[] = {"NEAREST", "LINEAR", "CUBIC"};
 const char* const lookupNames[] = {"AUTOMATIC_LOOKUP", "AFTER_INTERPOLATION",
                                    "BEFORE_INTERPOLATION", "PREINTEGRATED"};
 const char* const modeNames[] = {"VIEWPORT_ALIGNED", "AXIS_ALIGNED", "SPHERICAL"};
+const char* const rayFunctionNames[] = {"COMPOSITE", "MAXIMUM", "MINIMUM",
+                                        "AVERAGE",   "SUM",     "ISOSURFACE"};
+const char* const gradientNames[] = {"ON_THE_FLY", "PRECOMPUTED"};
 const char* const spaceNames[] = {"VIEW_VOLUME", "OBJECT", "PRIMITIVE"};
 
 const std::vector<Property>& properties()
@@ -127,8 +161,19 @@ const std::vector<Property>& properties()
         choice<&A::getSamplingMode, &A::setSamplingMode>("SamplingMode", modeNames),
         choice<&A::getSamplingSpace, &A::setSamplingSpace>("SamplingSpace", spaceNames),
         samplingPeriod(),
-        maximumSamples(),
-        opacityUnit(),
+        integer<&A::getMaximumSamples, &A::setMaximumSamples>("MaximumSamples"),
+        number<&A::getOpacityUnit, &A::setOpacityUnit>("OpacityUnit", 0.0),
+        sinceVersion(
+            3, choice<&A::getRayFunction, &A::setRayFunction>("RayFunction", rayFunctionNames)),
+        sinceVersion(3, number<&A::getIsoValue, &A::setIsoValue>("IsoValue", -INFINITY)),
+        sinceVersion(3, flag<&A::getShading, &A::setShading>("Shading")),
+        sinceVersion(3, material()),
+        sinceVersion(3, choice<&A::getGradients, &A::setGradients>("Gradients", gradientNames)),
+        sinceVersion(3, accumulationBits()),
+        sinceVersion(3,
+                     number<&A::getErrorTolerance, &A::setErrorTolerance>("ErrorTolerance", 0.0)),
+        sinceVersion(
+            3, number<&A::getTargetFrameTime, &A::setTargetFrameTime>("TargetFrameTime", 0.0)),
     };
     return list;
 }

@@ -9,7 +9,7 @@ import sys
 
 COLORS = {
     "osgVolumizer slabs": "#d62728", "osgVolumizer slices": "#ff9896",
-    "bare march": "#000000", "bare march, integral": "#7f7f7f",
+    "bare march": "#000000", "bare march integral": "#7f7f7f",
     "osgVolume FixedFunction": "#9467bd", "osgVolume RayTraced": "#1f77b4",
     "osgVolume Multipass": "#17becf", "VTK GPU": "#2ca02c", "VTK CPU": "#bcbd22",
 }

@@ -147,6 +147,56 @@ TEST_P(SerializerTest, AppearancesKeepTheirSampling)
     EXPECT_TRUE(errors().empty()) << errors();
 }
 
+TEST_P(SerializerTest, AppearancesKeepRayFunctionsAndShading)
+{
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    const int bits[] = {8, 16, 32};
+    for (int i = 0; i <= VolumeAppearance::ISOSURFACE; ++i) {
+        a->setRayFunction(static_cast<VolumeAppearance::RayFunction>(i));
+        ASSERT_TRUE(a->setIsoValue(-1.0 / 3.0 + i).ok());
+        a->setShading(i % 2 == 0);
+        ASSERT_TRUE(a->setMaterial({0.1 * i, 1.0 / 3.0, 0.3 + i, 0.7 * i}).ok());
+        a->setGradients(static_cast<VolumeAppearance::Gradients>(i % 2));
+        ASSERT_TRUE(a->setAccumulationBits(bits[i % 3]).ok());
+        ASSERT_TRUE(a->setErrorTolerance(1e-3 * i / 3.0).ok());
+        ASSERT_TRUE(a->setTargetFrameTime(i / 60.0).ok());
+        const auto b = roundTrip(*a);
+        ASSERT_TRUE(b);
+        EXPECT_EQ(b->getRayFunction(), a->getRayFunction());
+        EXPECT_EQ(b->getIsoValue(), a->getIsoValue());
+        EXPECT_EQ(b->getShading(), a->getShading());
+        EXPECT_EQ(b->getMaterial().ambient, a->getMaterial().ambient);
+        EXPECT_EQ(b->getMaterial().diffuse, a->getMaterial().diffuse);
+        EXPECT_EQ(b->getMaterial().specular, a->getMaterial().specular);
+        EXPECT_EQ(b->getMaterial().shininess, a->getMaterial().shininess);
+        EXPECT_EQ(b->getGradients(), a->getGradients());
+        EXPECT_EQ(b->getAccumulationBits(), a->getAccumulationBits());
+        EXPECT_EQ(b->getErrorTolerance(), a->getErrorTolerance());
+        EXPECT_EQ(b->getTargetFrameTime(), a->getTargetFrameTime());
+    }
+    EXPECT_TRUE(errors().empty()) << errors();
+}
+
+// Version 2 had none of these: what is not in the file keeps its default, and nothing is missed.
+TEST_P(SerializerTest, OlderVersionsKeepDefaults)
+{
+    if (GetParam() == std::string("osgb")) return; // has no text
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    a->setTechnique(VolumeAppearance::SLICES);
+    a->setShading(true);
+    std::string content = write(*a);
+    const std::size_t version =
+        content.find("1 3", content.find("Version", content.find("Sampling")));
+    ASSERT_NE(version, std::string::npos);
+    content[version + 2] = '2';
+    const auto read = SerializerTest::read(content);
+    const auto* b = dynamic_cast<const VolumeAppearance*>(read.get());
+    ASSERT_TRUE(b);
+    EXPECT_EQ(b->getTechnique(), VolumeAppearance::SLICES);
+    EXPECT_FALSE(b->getShading());
+    EXPECT_TRUE(errors().empty()) << errors();
+}
+
 TEST_P(SerializerTest, InlineVoxelsKeepEveryByteOfEveryType)
 {
     for (int type = 0; type <= static_cast<int>(VoxelType::FLOAT64); ++type)

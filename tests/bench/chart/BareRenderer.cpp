@@ -58,7 +58,7 @@ class BareRenderer : public Renderer
 public:
     explicit BareRenderer(bool integral) : _integral(integral) {}
 
-    std::string name() const override { return _integral ? "bare march, integral" : "bare march"; }
+    std::string name() const override { return _integral ? "bare march integral" : "bare march"; }
     Status open(const ChartScene& scene) override;
     Status setStep(double stepVoxel) override
     {
