@@ -1,6 +1,7 @@
 #include "Accumulation.h"
 
 #include "ScissorScope.h"
+#include "ScreenPass.h"
 #include "SharedStateSets.h"
 #include "VolumeProgram.h"
 
@@ -103,6 +104,17 @@ void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorF
     gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D, color,
                               0);
     gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth, 0);
+}
+
+// Of the leaf that ends accumulation: writes depth.
+osg::ref_ptr<osg::StateSet> depthStateSet()
+{
+    return sharedStateSet(SharedState::DEPTH, []() {
+        osg::ref_ptr<osg::StateSet> set = screenState("depth.frag.glsl", true);
+        set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
+        set->addUniform(new osg::Uniform("targetDepth", int(UNIT_LAYER_DEPTH)));
+        return set;
+    });
 }
 
 // Clearing the layer buffer needs depth writes.
@@ -226,7 +238,7 @@ void Accumulation::end(osg::RenderInfo& renderInfo)
 {
     osg::State& state = *renderInfo.getState();
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    if (_redirected) writeBack(state, contextResources(state)->accumulation);
+    if (_redirected) writeBack(state, *contextResources(state));
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_readFramebuffer));
     state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
@@ -262,14 +274,21 @@ void Accumulation::endLayer(osg::RenderInfo& renderInfo)
     state.get<osg::GLExtensions>()->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, target);
 }
 
-void Accumulation::writeBack(osg::State& state, AccumulationBuffers& buffers)
+void Accumulation::writeBack(osg::State& state, ContextResources& resources)
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const AccumulationBuffers& buffers = resources.accumulation;
     const AccumulationSettings& s = _settings;
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, buffers.framebuffer);
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
     gl.glBlitFramebuffer(s.x, s.y, s.x + s.width, s.y + s.height, s.x, s.y, s.x + s.width,
                          s.y + s.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    if (!_depthKept) return;
+    // Not a blit, which would need the framebuffer's very format.
+    state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth);
+    state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.depth);
+    drawScreen(state, resources, {s.x, s.y, s.width, s.height});
+    state.haveAppliedTextureAttribute(UNIT_LAYER_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
 AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step, const glm::ivec4& area)
@@ -305,7 +324,9 @@ osgUtil::RenderLeaf* accumulationLeaf(Accumulation& accumulation, AccumulationLe
 {
     osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
         new AccumulationLeaf(&accumulation, step, area), beside._projection, beside._modelview);
-    beside._parent->find_or_insert(accumulationStateSet())->addLeaf(leaf);
+    const bool writesDepth = step == AccumulationLeaf::END && accumulation.isDepthKept();
+    const osg::ref_ptr<osg::StateSet> set = writesDepth ? depthStateSet() : accumulationStateSet();
+    beside._parent->find_or_insert(set)->addLeaf(leaf);
     return leaf.get();
 }
 

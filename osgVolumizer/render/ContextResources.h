@@ -68,8 +68,11 @@ struct ContextResources
     RayBuffers rays;
 };
 
-/// The resources of the current context; call only while it is current.
+/// The resources of the current context; call only while it is current. They are released with the
+/// context, when OSG deletes or discards its objects.
 std::shared_ptr<ContextResources> contextResources(osg::State& state);
+/// Of how many contexts there are resources.
+std::size_t contextResourcesCount();
 /// Follows osg::Object::releaseGLObjects: one context's resources, or all for null.
 void releaseContextResources(osg::State* state);
 

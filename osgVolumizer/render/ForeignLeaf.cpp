@@ -26,22 +26,43 @@ bool sameRays(const osg::Matrixd& a, const osg::Matrixd& b)
     return true;
 }
 
-// The Depth attribute that OSG would apply for a graph: the last one on the way down that no
-// override stops.
-const osg::Depth* effectiveDepth(const osgUtil::StateGraph* graph)
+// State sets from the root down.
+std::vector<const osg::StateSet*> pathOf(const osgUtil::StateGraph* graph)
 {
     std::vector<const osg::StateSet*> path;
     for (; graph; graph = graph->_parent)
         if (graph->getStateSet()) path.push_back(graph->getStateSet());
+    std::reverse(path.begin(), path.end());
+    return path;
+}
+
+// The Depth attribute that OSG would apply for a graph: the last one on the way down that no
+// override stops.
+const osg::Depth* effectiveDepth(const osgUtil::StateGraph* graph)
+{
     const osg::Depth* depth = nullptr;
     bool overridden = false;
-    for (auto set = path.rbegin(); set != path.rend(); ++set) {
-        const auto* pair = (*set)->getAttributePair(StateAttribute::DEPTH);
+    for (const osg::StateSet* set : pathOf(graph)) {
+        const auto* pair = set->getAttributePair(StateAttribute::DEPTH);
         if (!pair || (overridden && !(pair->second & StateAttribute::PROTECTED))) continue;
         depth = static_cast<const osg::Depth*>(pair->first.get());
         overridden = (pair->second & StateAttribute::OVERRIDE) != 0;
     }
     return depth;
+}
+
+// Likewise for a mode; OSG has the depth test on by default.
+bool isDepthTested(const osgUtil::StateGraph* graph)
+{
+    bool on = true, overridden = false;
+    for (const osg::StateSet* set : pathOf(graph)) {
+        const StateAttribute::GLModeValue value = set->getMode(GL_DEPTH_TEST);
+        if (value & StateAttribute::INHERIT) continue;
+        if (overridden && !(value & StateAttribute::PROTECTED)) continue;
+        on = (value & StateAttribute::ON) != 0;
+        overridden = (value & StateAttribute::OVERRIDE) != 0;
+    }
+    return on;
 }
 
 // Normalised device z of the plane at a depth.
@@ -52,6 +73,12 @@ double deviceZ(const osg::Matrixd& p, double depth)
 }
 
 } // namespace
+
+bool writesDepth(const osgUtil::StateGraph* graph)
+{
+    const osg::Depth* depth = effectiveDepth(graph);
+    return isDepthTested(graph) && (!depth || depth->getWriteMask());
+}
 
 BoxInView boxInView(const osg::BoundingBoxd& box, const osg::Matrixd& modelView,
                     const osg::Matrixd& projection)

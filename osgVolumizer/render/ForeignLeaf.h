@@ -35,6 +35,9 @@ struct BoxInView
 BoxInView boxInView(const osg::BoundingBoxd& box, const osg::Matrixd& modelView,
                     const osg::Matrixd& projection);
 
+/// Whether what is drawn in a graph may change the depth buffer.
+bool writesDepth(const osgUtil::StateGraph* graph);
+
 /// A leaf that is not ours, in the same bin: never touched, but replaced by copies where it reaches
 /// into a volume.
 class ForeignLeaf

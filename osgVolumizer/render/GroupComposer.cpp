@@ -64,6 +64,21 @@ void GroupComposer::prepareVolumes()
     }
 }
 
+VolumeOutline GroupComposer::outlineOf(const VolumeInstance& volume) const
+{
+    VolumeOutline outline;
+    outline.depth = volume.depth;
+    // Faces of slabs are a little larger than their box.
+    outline.margin = {4.0 / std::max(_viewport[2], 1), 4.0 / std::max(_viewport[3], 1)};
+    const glm::dmat4 toClip = toGlm(*volume.leaf->_projection) * toGlm(*volume.leaf->_modelview);
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec4 clip = toClip * glm::dvec4(volume.prepared->regionBox.corner(i), 1.0);
+        outline.everywhere = outline.everywhere || !(clip.w > 0.0);
+        outline.corners[i] = glm::dvec2(clip) / clip.w;
+    }
+    return outline;
+}
+
 // Surfaces that, looked at closely, reach into no volume stay the leaves they are.
 void GroupComposer::prepareSurfaces(std::vector<OrderedLeaf>& leaves)
 {
@@ -73,8 +88,9 @@ void GroupComposer::prepareSurfaces(std::vector<OrderedLeaf>& leaves)
         surface.mesh = SurfaceMesh::of(*leaf);
         surface.view = surface.mesh ? surface.mesh->view() : leaf->view();
         const bool reaches =
-            std::any_of(_volumes.begin(), _volumes.end(), [&surface](const PreparedVolume& v) {
-                return v.instance->depth.overlaps(surface.view.depth);
+            std::any_of(_volumes.begin(), _volumes.end(), [&](const PreparedVolume& v) {
+                return surface.mesh ? surface.mesh->touches(outlineOf(*v.instance))
+                                    : v.instance->depth.overlaps(surface.view.depth);
             });
         if (reaches)
             _surfaces.push_back(std::move(surface));
@@ -231,6 +247,7 @@ void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>
         addSurfaces(begin, rank, region, depth, leaves);
         addLayerStep(rest ? Step::END_REST : Step::END_RANK, query, region, depth, leaves);
     }
+    addSurfaces(Step::DEPTH, 0, region, depth, leaves);
 }
 
 // Intervals without surfaces: slabs, alternating who goes first.
@@ -273,6 +290,7 @@ void GroupComposer::addSurfaces(LayerLeaf::Step step, int index, const Region& r
 {
     for (std::size_t s : region.surfaces) {
         const ForeignLeaf& surface = *_surfaces[s].leaf;
+        if (step == LayerLeaf::DEPTH && !writesDepth(surface.leaf()._parent)) continue;
         leaves.push_back({depth, surface.copy(*layerSurfaceState(step, index))});
         ++_counts.surfacePieces;
     }
@@ -369,8 +387,8 @@ void GroupComposer::addVolume(PreparedVolume& volume, std::shared_ptr<const Volu
     osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
         drawable, instance.leaf->_projection, instance.leaf->_modelview, static_cast<float>(depth));
     osgUtil::StateGraph* graph = instance.leaf->_parent;
-    if (look->features.key() != instance.look->features.key())
-        graph = graph->_parent->find_or_insert(volumeStateSet(look->features));
+    const osg::ref_ptr<osg::StateSet> set = volumeStateSet(look->features);
+    if (graph->getStateSet() != set) graph = graph->_parent->find_or_insert(set);
     graph->addLeaf(leaf);
     leaves.push_back({depth, leaf.get()});
 }

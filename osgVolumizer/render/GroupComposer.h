@@ -93,6 +93,7 @@ private:
 
     bool prepare(VolumeInstance& instance, PreparedVolume& volume);
     void prepareVolumes();
+    VolumeOutline outlineOf(const VolumeInstance& volume) const;
     void prepareSurfaces(std::vector<OrderedLeaf>& leaves);
     std::vector<Region> findRegions() const;
     static bool leavesDepth(const Surface& surface);

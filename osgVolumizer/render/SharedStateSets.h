@@ -14,7 +14,9 @@ enum class SharedState : std::uint64_t
     SORT = std::uint64_t(1) << 63,
     FILL,
     CLEAR,
-    ACCUMULATION
+    ACCUMULATION,
+    DEPTH,
+    LAYER_SURFACES ///< and the following
 };
 
 /// State sets that all volumes, views and contexts share, made when first asked for. Thread safe.

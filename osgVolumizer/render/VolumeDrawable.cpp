@@ -239,6 +239,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     if (_look->features.opaqueDepth)
         setDepthTextures(state, uniforms, *rays, _look->features, resources->accumulation);
     if (_look->table.texture) state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
+    setPaints(state, uniforms, _look->paints, UNIT_FIRST_PAINT);
     // Gathered values hide nothing, so they need no order, and no parts.
     std::optional<RayTarget> target;
     if (_look->features.gathers())

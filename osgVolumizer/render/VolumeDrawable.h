@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Paint.h"
 #include "SceneLights.h"
 #include "TableTextures.h"
 #include "VolumeProgram.h"
@@ -74,6 +75,7 @@ struct VolumeLook
     /// which pixels a segment covers is for the shader to say, whose answer does not depend on how
     /// GL rounds vertices or whom it gives the pixels on an edge.
     glm::dvec3 pixelMargin{0.0};
+    std::vector<Paint> paints;
     std::vector<glm::vec4> planes; ///< the region's half-spaces (frame)
 };
 

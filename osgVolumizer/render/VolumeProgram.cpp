@@ -1,5 +1,6 @@
 #include "VolumeProgram.h"
 
+#include "Paint.h"
 #include "SharedStateSets.h"
 
 #include <osg/AlphaFunc>
@@ -39,6 +40,7 @@ std::string header(const ProgramFeatures& features)
     static const char* const functions[] = {"COMPOSITE", "MAXIMUM", "MINIMUM",
                                             "AVERAGE",   "SUM",     "ISOSURFACE"};
     define(true, functions[features.rayFunction]);
+    define(features.paintCount > 0, "PAINTED");
     define(features.shading, "SHADING");
     define(features.gradientTexture, "GRADIENT_TEXTURE");
     define(features.shortRuns, "SHORT_RUNS");
@@ -58,10 +60,11 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
     result->addShader(
         new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource(kind + ".vert.glsl")));
     std::string fragment = header(features);
-    for (const std::string& file :
-         {std::string("voxels.glsl"), std::string("transfer.glsl"), std::string("ray.glsl"),
-          std::string("shading.glsl"), std::string("skipping.glsl"), kind + ".frag.glsl"})
+    for (const char* file : {"voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl",
+                             "skipping.glsl", "segment.glsl"})
         fragment += shaderSource(file);
+    if (features.paintCount > 0) fragment += paintSource(features.paintCount);
+    fragment += shaderSource(kind + ".frag.glsl");
     result->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));
     return result;
 }
@@ -95,7 +98,6 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
     set->addUniform(new osg::Uniform("cells", int(UNIT_CELLS)));
     set->setRenderBinDetails(10, "DepthSortedBin");
-    set->setNestRenderBins(false);
     return set;
 }
 

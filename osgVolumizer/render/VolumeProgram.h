@@ -33,6 +33,7 @@ struct ProgramFeatures
     bool gradientTexture = false; ///< brick textures hold gradients besides values
     bool skipping = false;        ///< leap over cells that show nothing
     bool countSamples = false;    ///< draw the number of samples: see setSampleCounting()
+    int paintCount = 0;           ///< bricks of volumes that paint this one; no more than 4
     int planeCount = 0;           ///< half-spaces that end the segment, besides the clip box
 
     /// Whether the rays' values are gathered in a target of their own, and drawn as one layer.
@@ -45,8 +46,9 @@ struct ProgramFeatures
     /// Different for different features.
     std::uint64_t key() const
     {
-        std::uint64_t result =
-            static_cast<std::uint64_t>(planeCount) << 3 | static_cast<std::uint64_t>(rayFunction);
+        std::uint64_t result = static_cast<std::uint64_t>(planeCount) << 3;
+        result = (result | static_cast<std::uint64_t>(paintCount)) << 3 |
+                 static_cast<std::uint64_t>(rayFunction);
         for (bool flag :
              {slab,       voxelCoordinates, vertexColors, voxels,      rgba,    opaqueDepth,
               layerDepth, ranked,           spherical,    exact,       nearest, cubic,
@@ -67,7 +69,8 @@ enum TextureUnit : unsigned
     UNIT_SORTED_FAR, ///< the four farthest depths of a pixel's surfaces
     UNIT_SORTED_NEAR,
     UNIT_CELLS,
-    UNIT_FIRST_LAYER ///< and the following: captured depths
+    UNIT_FIRST_LAYER,                   ///< and the following: captured depths
+    UNIT_FIRST_PAINT = UNIT_FIRST_LAYER ///< and the following, in other programs
 };
 /// Vertex attributes.
 enum Attribute : unsigned

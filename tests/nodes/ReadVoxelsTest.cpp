@@ -1,5 +1,7 @@
 #include <osgVolumizer/ReadVoxels.h>
 
+#include "../support/LeaksOfOthers.h"
+
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
@@ -376,7 +378,10 @@ TEST_F(ReadVoxels, TruncatedImages)
     const std::string png =
         writeImage<std::uint8_t>("cut.png", OIIO::ImageSpec(64, 64, 1, OIIO::TypeDesc::UINT8), 0);
     fs::resize_file(png, fs::file_size(png) / 2);
-    EXPECT_EQ(ErrorCode::FILE_UNREADABLE, statusOf(png).code);
+    {
+        const osgVolumizer::test::LeaksOfOthers pngReader; // jumps over a string of its own
+        EXPECT_EQ(ErrorCode::FILE_UNREADABLE, statusOf(png).code);
+    }
     EXPECT_EQ(ErrorCode::FILE_UNREADABLE, statusOf(writeBytes("text.tif", "no image")).code);
 }
 

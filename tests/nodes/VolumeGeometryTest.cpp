@@ -85,7 +85,7 @@ TEST(VolumeGeometry, BoundsHoldEveryVertexWhereverItIs)
             EXPECT_LE((osg::Vec3d(sphere.center()) - p).length(), double(sphere.radius()));
         }
     }
-    EXPECT_FALSE((new VolumeGeometry)->getBound().valid());
+    EXPECT_FALSE(osg::ref_ptr<VolumeGeometry>(new VolumeGeometry)->getBound().valid());
 }
 
 TEST(VolumeGeometry, AVisitorSeesItLikeAnyDrawable)

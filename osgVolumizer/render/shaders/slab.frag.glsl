@@ -57,42 +57,6 @@ float sortedDepth(int i)
 }
 #endif
 
-// Narrows the segment to a half-space.
-void clipToPlane(vec4 plane, vec3 origin, vec3 direction, inout float tNear, inout float tFar)
-{
-    float distance = dot(plane.xyz, origin) + plane.w;
-    float rate = dot(plane.xyz, direction);
-    if (rate > 0.0)
-        tNear = max(tNear, -distance / rate);
-    else if (rate < 0.0)
-        tFar = min(tFar, -distance / rate);
-    else if (distance < 0.0)
-        tFar = tNear;
-}
-
-// A ray, and how it meets planes across the axes.
-struct BoxRay
-{
-    vec3 origin, inverse; // of the direction
-    vec3 bias;            // see boxSegment()
-};
-
-BoxRay boxRay(vec3 origin, vec3 direction)
-{
-    vec3 inverse = 1.0 / mix(direction, vec3(1e-30), equal(direction, vec3(0.0)));
-    return BoxRay(origin, inverse, -1e-15 * inverse);
-}
-
-// The segment in a box; boxes are half-open, so that neighbours share no ray and leave none out: the bias, which is
-// nothing otherwise, decides for rays in a face.
-vec2 boxSegment(vec3 low, vec3 high, BoxRay ray)
-{
-    vec3 a = (low - ray.origin) * ray.inverse + ray.bias;
-    vec3 b = (high - ray.origin) * ray.inverse + ray.bias;
-    vec3 enter = min(a, b), leave = max(a, b);
-    return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
-}
-
 // Number of steps for a segment, such that their mean over all segments is the period.
 float stepsOf(float tNear, float tFar)
 {
@@ -251,6 +215,9 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 #ifdef SHADING
     color = lit(color, start + at * rate, tNear + at * dt);
 #endif
+#ifdef PAINTED
+    color.rgb = painted(color.rgb, origin + (tNear + at * dt) * direction);
+#endif
     return color;
 }
 
@@ -259,14 +226,17 @@ uniform bool homogeneous;           // all of the brick has one value
 uniform vec3 brickMin, brickMax; // what the brick's texture has values for
 
 // Adds the piece of the ray from the last place to this one, where the depth is t.
-void addRun(vec3 place, float depth, float unitsPerDepth, vec3 rate, float t, inout float entry,
-            inout vec4 integral, inout vec4 light)
+void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float unitsPerDepth,
+            inout float entry, inout vec4 integral, inout vec4 light)
 {
     float nextEntry = tableEntryAfter(entry, place);
     vec4 nextIntegral = tableIntegral(nextEntry);
     vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
 #ifdef SHADING
-    c = lit(c, place - 0.5 * depth * rate, t - 0.5 * depth);
+    c = lit(c, place - 0.5 * depth * VOXEL_LENGTH * direction, t - 0.5 * depth);
+#endif
+#ifdef PAINTED
+    c.rgb = painted(c.rgb, origin + (t - 0.5 * depth) * direction);
 #endif
     COUNT_SAMPLE
     float next = light.a * exp2(-c.a * (depth * unitsPerDepth));
@@ -280,7 +250,7 @@ void addRun(vec3 place, float depth, float unitsPerDepth, vec3 rate, float t, in
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
 {
     float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
-    vec2 brick = boxSegment(brickMin, brickMax, boxRay(origin, direction));
+    vec2 brick = boxSegment(brickMin, brickMax, origin, direction);
     float start = max(tNear, brick.x), stop = min(tFar, brick.y);
 #ifdef SKIPPING
     shown = occupiedPart(origin, direction, max(start, shown.x), min(stop, shown.y));
@@ -306,7 +276,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
     place += rate * depth;
     t += depth;
     for (int steps = int(last - i); steps > 0 && light.a > OPAQUE_ENOUGH; --steps) {
-        addRun(place, depth, unitsPerDepth, rate, t, entry, integral, light);
+        addRun(origin, direction, t, place, depth, unitsPerDepth, entry, integral, light);
         depth = min(dt, stop - t); // of the last one, which may be cut too
         t += depth;
         place += rate * depth;
@@ -342,8 +312,11 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
         vec4 c = classify(place);
 #ifdef SHADING
         c = lit(c, place, t);
-        t += dt;
 #endif
+#ifdef PAINTED
+        c.rgb = painted(c.rgb, origin + t * direction);
+#endif
+        t += dt;
         COUNT_SAMPLE
         float next = transmittance * exp2(-c.a * units);
         color += (transmittance - next) * c.rgb;
@@ -358,9 +331,8 @@ void main()
 {
     vec3 origin, direction;
     pixelRay(origin, direction);
-    BoxRay ray = boxRay(origin, direction);
-    vec2 region = boxSegment(regionMin, regionMax, ray);
-    vec2 brick = boxSegment(clipMin, clipMax, ray);
+    vec2 region = boxSegment(regionMin, regionMax, origin, direction);
+    vec2 brick = boxSegment(clipMin, clipMax, origin, direction);
     float tNear = max(region.x, slab.x);
     float tFar = min(region.y, slab.y);
 #if PLANES > 0
@@ -392,7 +364,17 @@ void main()
     towardsEye = -normalize(directionEye);
 #endif
 
+#ifdef PAINTED
+    // Colours jump where paint begins, so segments end there.
+    fragColor = vec4(0.0);
+    for (float t = tNear; t < tFar && fragColor.a < 1.0 - OPAQUE_ENOUGH;) {
+        float next = nextCut(origin, direction, t, tFar);
+        fragColor += (1.0 - fragColor.a) * march(origin, direction, t, next, brick);
+        t = next;
+    }
+#else
     fragColor = march(origin, direction, tNear, tFar, brick);
+#endif
 #ifdef COUNT_SAMPLES
     fragColor = vec4(sampleCount, 0.0, 0.0, 0.0);
 #endif
