@@ -2,10 +2,12 @@
 
 #include "../Error.h"
 #include "BrickTextures.h"
+#include "CoarseTexture.h"
 #include "ContextResources.h"
 #include "Matrices.h"
 #include "PixelRays.h"
 #include "RayTarget.h"
+#include "ReportOnce.h"
 #include "ScissorScope.h"
 #include "Statistics.h"
 #include "Uniforms.h"
@@ -178,16 +180,18 @@ void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms, const Bric
 {
     osg::State& state = *renderInfo.getState();
     if (batch.texture) {
-        if (!batch.texture->getTextureObject(state.getContextID())) {
+        const CoarseTexture voxels =
+            fittingTexture(*batch.texture, contextResources(state)->limits.texture3DSize);
+        if (!voxels.texture->getTextureObject(state.getContextID())) {
             count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
                   "osgVolumizer bricks uploaded", 1.0);
             count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
                   "osgVolumizer bytes uploaded", static_cast<double>(batch.textureBytes));
-            chooseFormat(state, *batch.texture);
+            chooseFormat(state, *voxels.texture);
         }
-        state.applyTextureAttribute(UNIT_VOXELS, batch.texture.get());
-        uniforms.set("textureScale", batch.textureScale);
-        uniforms.set("textureOffset", batch.textureOffset);
+        state.applyTextureAttribute(UNIT_VOXELS, voxels.texture.get());
+        uniforms.set("textureScale", batch.textureScale * voxels.scale);
+        uniforms.set("textureOffset", batch.textureOffset * voxels.scale + voxels.offset);
     }
     uniforms.set("clipMin", batch.clipMin);
     uniforms.set("clipMax", batch.clipMax);
@@ -208,8 +212,11 @@ VolumeDrawable::VolumeDrawable()
 void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     osg::State& state = *renderInfo.getState();
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    const Status supported = resources->limits.check();
+    reportOnce(supported);
     const auto* program = state.getLastAppliedProgramObject();
-    if (!_mesh || !_look || _mesh->batches.empty() || !program) return;
+    if (!supported || !_mesh || !_look || _mesh->batches.empty() || !program) return;
     const glm::dmat4 toEye = toGlm(state.getModelViewMatrix());
     const glm::dmat4 projection = toGlm(state.getProjectionMatrix());
     const Result<PixelRays> rays =
@@ -219,7 +226,6 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
         return;
     }
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const std::shared_ptr<ContextResources> resources = contextResources(state);
     const Uniforms uniforms(gl, *program);
     uniforms.set("frameToClip", projection * toEye);
     setLook(uniforms, *_look, *rays);

@@ -63,7 +63,7 @@ enum TextureUnit : unsigned
     UNIT_LAYER_DEPTH,
     UNIT_SORTED_FAR, ///< the four farthest depths of a pixel's surfaces
     UNIT_SORTED_NEAR,
-    UNIT_FIRST_LAYER, ///< and the following: captured depths
+    UNIT_FIRST_LAYER,                   ///< and the following: captured depths
     UNIT_FIRST_PAINT = UNIT_FIRST_LAYER ///< and the following, in other programs
 };
 /// Vertex attributes.
