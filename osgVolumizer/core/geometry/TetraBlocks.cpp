@@ -1,5 +1,7 @@
 #include "TetraBlocks.h"
 
+#include "../LargePages.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -12,6 +14,7 @@ namespace core {
 namespace {
 
 constexpr std::uint32_t NONE = 0xffffffffu;
+constexpr std::size_t RECORD_PADDING = 4;
 
 /// Puts two zero bits after each of the low 10 bits.
 std::uint64_t spread(std::uint64_t v)
@@ -57,7 +60,7 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
     blocks.clear();
     sourceVertices.clear();
     sortTetrahedra(set);
-    tetrahedra.resize(set.tetraCount());
+    resizeLarge(tetrahedra, set.tetraCount());
     _stamps.assign(set.vertices.size(), NONE);
     _local.resize(set.vertices.size());
     for (std::size_t i = 0; i < tetrahedra.size(); ++i) {
@@ -91,13 +94,13 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
         if (glm::dot(glm::cross(b, c), d) < 0.0) std::swap(tetrahedra[i].v[0], tetrahedra[i].v[1]);
     }
     findEdges();
-    const std::size_t stride = recordSize() - 1;
+    const std::size_t stride = recordSize();
     const auto position = static_cast<std::size_t>(_format.positionOffset());
-    records.resize(sourceVertices.size() * recordSize());
+    resizeLarge(records, sourceVertices.size() * stride + RECORD_PADDING);
     for (Block& block : blocks)
         for (std::uint32_t i = block.firstVertex; i < block.firstVertex + block.vertexCount; ++i) {
             const double* from = set.vertices.record(sourceVertices[i]);
-            double* to = record(i);
+            double* to = records.data() + i * stride;
             std::copy(from, from + stride, to);
             for (std::size_t a = 0; a < 3; ++a)
                 to[position + a] -= origin[static_cast<int>(a)];
@@ -111,7 +114,7 @@ void TetraBlocks::findEdges()
 {
     static constexpr int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
     edges.clear();
-    tetraEdges.resize(tetrahedra.size());
+    resizeLarge(tetraEdges, tetrahedra.size() + 1);
     std::size_t width = 0;
     for (const Block& b : blocks)
         width = std::max<std::size_t>(width, b.vertexCount);
@@ -166,11 +169,18 @@ TetraBlocks::Place TetraBlocks::placeOf(const BoxIndex& boxes, const Block& bloc
 void TetraBlocks::place(const BoxIndex& boxes)
 {
     places.clear();
+    for (Block& b : blocks)
+        b.place = 0;
     if (boxes.boxes().empty()) return;
     places.resize(tetrahedra.size());
-    for (const Block& b : blocks)
+    for (Block& b : blocks) {
         for (std::uint32_t t = b.firstTetra; t < b.firstTetra + b.tetraCount; ++t)
             places[t] = placeOf(boxes, b, tetrahedra[t]);
+        b.place = places[b.firstTetra];
+        for (std::uint32_t t = b.firstTetra; t < b.firstTetra + b.tetraCount; ++t)
+            if (places[t] != b.place || (places[t] > BOX_MASK && places[t] != OUTSIDE))
+                b.place = CLIP;
+    }
 }
 
 } // namespace core

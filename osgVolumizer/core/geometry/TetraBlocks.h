@@ -27,6 +27,9 @@ public:
         std::uint32_t firstEdge = 0, edgeCount = 0;
         Box3d bounds;     ///< of the positions, relative to the origin
         Box3d clipBounds; ///< of what clipField() tells
+        /// The place of all its tetrahedra, where that is OUTSIDE or a box without faces in its
+        /// upper planes; else CLIP.
+        std::uint32_t place = 0;
     };
     struct Tetra
     {
@@ -52,19 +55,18 @@ public:
 
     std::vector<Block> blocks;
     std::vector<Tetra> tetrahedra;
-    std::vector<TetraEdges> tetraEdges;
+    std::vector<TetraEdges> tetraEdges; ///< one more than tetrahedra: reading 16 bytes is safe
     std::vector<Edge> edges;
     std::vector<std::uint32_t> sourceVertices; ///< of each vertex: its number in the tetra set
     std::vector<std::uint32_t> sourceTetrahedra;
-    /// Records of recordSize() values: those of the tetra set, positions relative to the origin,
-    /// and one value more that belongs to whoever slices.
+    /// Records of recordSize() values: those of the tetra set, positions relative to the origin.
+    /// Some values more at the end, so that any three may be read as a group of four.
     std::vector<double> records;
     std::vector<Place> places; ///< one per tetrahedron where there are clip boxes, else empty
 
     const VertexFormat& format() const { return _format; }
-    std::size_t recordSize() const { return static_cast<std::size_t>(_format.stride()) + 1; }
+    std::size_t recordSize() const { return static_cast<std::size_t>(_format.stride()); }
     const glm::dvec3& origin() const { return _origin; }
-    double* record(std::size_t vertex) { return records.data() + vertex * recordSize(); }
     const double* record(std::size_t vertex) const
     {
         return records.data() + vertex * recordSize();

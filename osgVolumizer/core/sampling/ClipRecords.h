@@ -2,7 +2,6 @@
 
 #include "../geometry/Box.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -42,16 +41,28 @@ public:
     }
     std::size_t size() const { return _corners.size(); }
     const double* record(std::size_t corner) const { return at(_corners[corner].record); }
-    /// As `other`, reusing this polygon's memory.
-    void assign(const RecordPolygon& other)
+    /// What clipping changes; records that were made stay where they are.
+    class Shape
     {
-        _stride = other._stride;
-        _used = other._used;
-        _corners.assign(other._corners.begin(), other._corners.end());
-        if (_values.size() < other._used * _stride) _values.resize(other._used * _stride);
-        std::copy(other._values.begin(),
-                  other._values.begin() + static_cast<std::ptrdiff_t>(_used * _stride),
-                  _values.begin());
+        friend class RecordPolygon;
+        struct Corner
+        {
+            int record, lineFrom, lineTo;
+        };
+        std::vector<Corner> corners;
+        std::size_t used = 0;
+    };
+    /// Remembers the polygon as it is, to go back to it after clipping. Both keep their memory.
+    void save(Shape& shape) const
+    {
+        shape.corners.assign(_corners.begin(), _corners.end());
+        shape.used = _used;
+    }
+    /// Expects that `shape` was saved since the last reset().
+    void restore(const Shape& shape)
+    {
+        _corners.assign(shape.corners.begin(), shape.corners.end());
+        _used = shape.used;
     }
 
     /// Keeps the part with value >= limit (`above`) or value < limit, the value being that of field
@@ -66,10 +77,7 @@ public:
 
 private:
     /// A vertex, and the line that carries the edge from it to the next.
-    struct Corner
-    {
-        int record, lineFrom, lineTo;
-    };
+    using Corner = Shape::Corner;
 
     const double* at(int record) const
     {

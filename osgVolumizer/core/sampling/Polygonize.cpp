@@ -221,15 +221,12 @@ Status Polygonizer::Private::cut(const SurfaceLattice& lattice, double eyeDepth,
     const auto n = static_cast<std::size_t>(plan.surfaceCount);
     surfaceDepths.resize(n);
     order.resize(n);
-    rank.resize(n);
     std::iota(order.begin(), order.end(), 0);
     for (std::size_t k = 0; k < n; ++k)
         surfaceDepths[k] =
             lattice.farDepth - (plan.firstSurface + static_cast<int>(k) + 0.5) * lattice.spacing;
     if (!std::isnan(eyeDepth)) orderByDistance(surfaceDepths, eyeDepth, order);
-    for (std::size_t k = 0; k < n; ++k)
-        rank[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
-    plan.rank = rank.data();
+    plan.order = order.data();
 
     if (Status s = slicer.run(plan, executor, out); !s) return s;
     out.surfaceCount = plan.surfaceCount;

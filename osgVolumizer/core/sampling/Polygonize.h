@@ -80,9 +80,10 @@ public:
     /// the same to the bit whatever the number of threads. Kept by reference.
     void setExecutor(Executor* executor);
 
-    /// Expects a tetra set. `out` is unchanged on failure. VALUE_INVALID for parameters (see
-    /// SamplingParameters::validate), SINGULAR_MATRIX, TOO_LARGE for more than 2^24 pairs of
-    /// surface and brick or 2^32 vertices.
+    /// Expects a tetra set. VALUE_INVALID for parameters (see SamplingParameters::validate),
+    /// SINGULAR_MATRIX, TOO_LARGE for more than 2^24 pairs of surface and brick: `out` is unchanged
+    /// then. TOO_LARGE also for more than 2^32 vertices, or more than memory holds, which shows
+    /// only on the way: `out` is empty then.
     ///
     /// OBJECT spreads the surfaces over the depths of the set, at the middles of equal layers, so
     /// that the sum of face areas times the spacing is a midpoint rule for the volume. VIEW_VOLUME

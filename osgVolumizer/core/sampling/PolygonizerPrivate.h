@@ -28,7 +28,7 @@ struct Polygonizer::Private
     TetraSet refined;
     std::vector<double> depths; // per vertex, where they are not those of planes
     std::vector<double> surfaceDepths;
-    std::vector<int> order, rank; // surfaces far to near, and the inverse
+    std::vector<int> order; // surfaces, far to near
     SlicePlan plan;
     Slicer slicer;
     double nearest = 0.0, farthest = 0.0;

@@ -1,3 +1,4 @@
+#include "../LargePages.h"
 #include "Interpolate.h"
 #include "Slicer.h"
 #include "TetraCases.h"
@@ -10,16 +11,18 @@ namespace core {
 
 namespace {
 
-void append(const SlicePlan& plan, const RecordPolygon& face, std::size_t bin, double spacing,
-            Slicer::Chunk& chunk)
+void append(const SlicePlan& plan, std::size_t bin, double spacing, Slicer::Chunk& chunk)
 {
-    const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
-    const std::size_t at = chunk.vertices.size();
-    chunk.vertices.resize(at + face.size() * stride);
-    float* to = chunk.vertices.data() + at;
-    for (std::size_t i = 0; i < face.size(); ++i)
+    const std::size_t stride = plan.blocks->recordSize();
+    const RecordPolygon& face = chunk.polygon;
+    growLarge(chunk.vertices, chunk.valueCount + face.size() * stride, chunk.valueCount);
+    float* to = chunk.vertices.data() + chunk.valueCount;
+    chunk.valueCount += face.size() * stride;
+    for (std::size_t i = 0; i < face.size(); ++i) {
+        const double* from = face.record(i);
         for (std::size_t k = 0; k < stride; ++k)
-            *to++ = static_cast<float>(face.record(i)[k]);
+            *to++ = static_cast<float>(from[k]);
+    }
     chunk.bins.push_back(static_cast<std::uint32_t>(bin));
     chunk.sizes.push_back(static_cast<std::uint16_t>(face.size()));
     if (plan.primitive) chunk.spacings.push_back(static_cast<float>(spacing));
@@ -27,50 +30,58 @@ void append(const SlicePlan& plan, const RecordPolygon& face, std::size_t bin, d
 
 void clipFace(const SlicePlan& plan, int surface, double spacing, Slicer::Chunk& chunk)
 {
-    const std::size_t firstBin = static_cast<std::size_t>(plan.rank[surface - plan.firstSurface]) *
+    const std::size_t firstBin = static_cast<std::size_t>(surface - plan.firstSurface) *
                                  static_cast<std::size_t>(plan.brickCount);
     if (!plan.boxes || plan.boxes->boxes().empty()) {
-        append(plan, chunk.whole, firstBin, spacing, chunk);
+        append(plan, firstBin, spacing, chunk);
         return;
     }
     const int field = plan.blocks->clipField();
+    RecordPolygon& polygon = chunk.polygon;
     Box3d extent;
-    for (std::size_t i = 0; i < chunk.whole.size(); ++i) {
-        const double* r = chunk.whole.record(i) + field;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const double* r = polygon.record(i) + field;
         extent.expand({r[0], r[1], r[2]});
     }
+    polygon.save(chunk.whole);
+    bool cut = false;
     plan.boxes->visit(extent.min, extent.max, [&](int brick, bool needsClipping) {
         const std::size_t bin = firstBin + static_cast<std::size_t>(brick);
-        if (!needsClipping) {
-            append(plan, chunk.whole, bin, spacing, chunk);
-            return;
-        }
-        chunk.part.assign(chunk.whole);
-        chunk.part.clipBox(field, plan.boxes->boxes()[static_cast<std::size_t>(brick)]);
-        if (chunk.part.size() >= 3) append(plan, chunk.part, bin, spacing, chunk);
+        if (cut) polygon.restore(chunk.whole);
+        cut = needsClipping;
+        if (needsClipping)
+            polygon.clipBox(field, plan.boxes->boxes()[static_cast<std::size_t>(brick)]);
+        if (polygon.size() >= 3) append(plan, bin, spacing, chunk);
     });
 }
 
 } // namespace
 
-void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
-               const TetraBlocks::Tetra& tetra, Slicer::Chunk& chunk)
+void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block, std::uint32_t tetrahedron,
+               const double* layers, Slicer::Chunk& chunk)
 {
     const TetraBlocks& blocks = *plan.blocks;
-    const auto stride = blocks.recordSize() - 1;
+    const std::size_t stride = blocks.recordSize();
+    const TetraBlocks::Tetra& tetra = blocks.tetrahedra[block.firstTetra + tetrahedron];
     const double* records[4];
     double f[4];
     for (int i = 0; i < 4; ++i) {
         records[i] = blocks.record(block.firstVertex + tetra.v[i]);
-        f[i] = records[i][stride];
+        f[i] = layers[tetra.v[i]];
     }
-    const double low = std::min(std::min(f[0], f[1]), std::min(f[2], f[3]));
-    const double high = std::max(std::max(f[0], f[1]), std::max(f[2], f[3]));
+    double low = std::min(std::min(f[0], f[1]), std::min(f[2], f[3]));
+    double high = std::max(std::max(f[0], f[1]), std::max(f[2], f[3]));
     if (!(low < high)) return;
     int first = plan.firstSurface, last = first + plan.surfaceCount;
     double scale = 1.0;
     if (plan.primitive) {
         // The tetrahedron's own layers, no thicker than those of the whole set.
+        if (plan.primitiveRanges) {
+            const DepthRange& range =
+                plan.primitiveRanges[blocks.sourceTetrahedra[block.firstTetra + tetrahedron]];
+            low = (plan.lattice.farDepth - range.farthest) / plan.lattice.spacing;
+            high = (plan.lattice.farDepth - range.nearest) / plan.lattice.spacing;
+        }
         last = std::max(1, static_cast<int>(std::ceil((high - low) * (1.0 - 1e-9))));
         scale = last / (high - low);
         first = 0;
@@ -86,13 +97,13 @@ void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
         for (int i = 0; i < 4; ++i)
             mask |= passed[i] > k ? 1u << i : 0u;
         const TetraCase& which = TETRA_CASES[mask];
-        chunk.whole.reset(static_cast<int>(stride));
+        chunk.polygon.reset(static_cast<int>(stride));
         for (std::size_t c = 0; c < static_cast<std::size_t>(which.count); ++c) {
             const std::size_t a = which.farVertex[c], b = which.nearVertex[c];
             const double t = (k + 0.5 - f[a]) / (f[b] - f[a]);
-            interpolate(records[a], records[b], t, stride, chunk.whole.append());
+            interpolate(records[a], records[b], t, stride, chunk.polygon.append());
         }
-        chunk.whole.close();
+        chunk.polygon.close();
         int surface = k;
         if (plan.primitive)
             surface =
@@ -103,12 +114,12 @@ void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
             clipFace(plan, surface, spacing, chunk);
             continue;
         }
-        chunk.uncut.assign(chunk.whole);
+        chunk.polygon.save(chunk.uncut);
         for (const std::vector<Plane>& piece : *plan.pieces) {
-            chunk.whole.assign(chunk.uncut);
-            for (std::size_t i = 0; i < piece.size() && chunk.whole.size() > 0; ++i)
-                chunk.whole.clipPlane(blocks.format().positionOffset(), piece[i]);
-            if (chunk.whole.size() >= 3) clipFace(plan, surface, spacing, chunk);
+            chunk.polygon.restore(chunk.uncut);
+            for (std::size_t i = 0; i < piece.size() && chunk.polygon.size() > 0; ++i)
+                chunk.polygon.clipPlane(blocks.format().positionOffset(), piece[i]);
+            if (chunk.polygon.size() >= 3) clipFace(plan, surface, spacing, chunk);
         }
     }
 }

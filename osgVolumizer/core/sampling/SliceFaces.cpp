@@ -1,5 +1,5 @@
-#include "Slicer.h"
-#include "TetraCases.h"
+#include "../LargePages.h"
+#include "SliceScan.h"
 
 #include <algorithm>
 
@@ -8,80 +8,73 @@ namespace core {
 
 namespace {
 
-struct Target
+/// Asks for memory that is read in no order soon.
+template <class T>
+void prefetch(const T* from, std::size_t count)
 {
-    std::uint32_t* indices;
-    std::uint32_t* faceOffsets;
-};
-
-/// Writes the faces of one block. All that the loop needs is in local variables, since the compiler
-/// has to expect that its stores change anything else.
-template <bool Bricks>
-void emitEntries(const SlicePlan& plan, Slicer::Chunk& chunk, const TetraBlocks::Block& block,
-                 std::size_t begin, std::size_t end, Target target)
-{
-    const TetraBlocks& blocks = *plan.blocks;
-    const TetraBlocks::TetraEdges* const tetraEdges = blocks.tetraEdges.data() + block.firstTetra;
-    const TetraBlocks::Place* const places =
-        Bricks ? blocks.places.data() + block.firstTetra : nullptr;
-    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
-    const std::uint32_t* const edgePoints = chunk.edgePoints.data();
-    const int* const rank = plan.rank;
-    const auto firstSurface = static_cast<std::uint32_t>(plan.firstSurface);
-    Slicer::Count* const cursors = chunk.fast.data();
-    const std::uint64_t* const last = chunk.entries.data() + end;
-    for (const std::uint64_t* entry = chunk.entries.data() + begin; entry != last; ++entry) {
-        const std::uint64_t e = *entry;
-        const auto surface = static_cast<std::uint32_t>(e >> 32);
-        const std::uint32_t t = static_cast<std::uint32_t>(e) >> 8;
-        const TetraCase& which = TETRA_CASES[e & 15u];
-        std::size_t bin = static_cast<std::uint32_t>(rank[surface - firstSurface]);
-        if (Bricks) bin = bin * brickCount + (places[t] & TetraBlocks::BOX_MASK);
-        const Slicer::Count cursor = cursors[bin];
-        cursors[bin] = cursor + Slicer::count(1, static_cast<std::uint32_t>(which.count));
-        target.faceOffsets[Slicer::faceCount(cursor)] = Slicer::indexCount(cursor);
-        std::uint32_t* const to = target.indices + Slicer::indexCount(cursor);
-        const std::uint16_t* const edges = tetraEdges[t].e;
-        to[0] = edgePoints[edges[which.edge[0]]] + surface;
-        to[1] = edgePoints[edges[which.edge[1]]] + surface;
-        to[2] = edgePoints[edges[which.edge[2]]] + surface;
-        // Of a triangle the last corner is the third once more.
-        to[which.count - 1] = edgePoints[edges[which.edge[3]]] + surface;
-    }
+    const char* p = reinterpret_cast<const char*>(from);
+    for (const char* const end = p + count * sizeof(T); p < end; p += 64)
+        __builtin_prefetch(p);
 }
 
 } // namespace
 
-void Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
+bool Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
 {
     const TetraBlocks& blocks = *plan.blocks;
-    const Target target{out.faces.indices.data(), out.faces.faceOffsets.data()};
-    std::size_t i = 0;
+    const std::size_t stride = blocks.recordSize();
+    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
+    std::size_t entry = 0;
     for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
-        const std::size_t end = chunk.blockEntries[b - chunk.firstBlock];
-        if (i == end) continue;
+        const BlockFaces& faces = chunk.blockFaces[b - chunk.firstBlock];
+        if (entry == faces.endEntry) continue;
         const TetraBlocks::Block& block = blocks.blocks[b];
+        if (b + 1 < chunk.endBlock) {
+            const TetraBlocks::Block& next = blocks.blocks[b + 1];
+            prefetch(_passed.data() + next.firstVertex, next.vertexCount);
+            prefetch(_layers.data() + next.firstVertex, next.vertexCount);
+            prefetch(blocks.record(next.firstVertex), next.vertexCount * stride);
+        }
+        packPassed(_passed.data() + block.firstVertex, faces.highest, chunk);
         listPoints(blocks.edges.data() + block.firstEdge, block.edgeCount,
                    _passed.data() + block.firstVertex, chunk);
-        writePoints(blocks, block, chunk,
-                    out.faces.vertices.data() + chunk.vertexCount * (blocks.recordSize() - 1));
+        if (!_countPoints) {
+            if (chunk.vertexCount + chunk.pointCount > 0xffffffffu) return false;
+            growLarge(out.faces.vertices, (chunk.vertexCount + chunk.pointCount) * stride,
+                      chunk.vertexCount * stride);
+        }
+        writePoints(blocks, block, _layers.data() + block.firstVertex, faces.base, chunk,
+                    out.faces.vertices.data() + chunk.vertexCount * stride);
         chunk.vertexCount += chunk.pointCount;
 
-        if (blocks.places.empty())
-            emitEntries<false>(plan, chunk, block, i, end, target);
+        Emission emission{};
+        emission.entries = chunk.entries.data() + entry;
+        emission.endEntries = chunk.entries.data() + faces.endEntry;
+        emission.tetraEdges = blocks.tetraEdges.data() + block.firstTetra;
+        emission.edgePoints = chunk.edgePoints.data();
+        emission.brickCount = brickCount;
+        emission.cursors =
+            chunk.fast.data() + std::size_t(faces.base - plan.firstSurface) * brickCount;
+        if (block.place == TetraBlocks::CLIP)
+            emission.places = blocks.places.data() + block.firstTetra;
         else
-            emitEntries<true>(plan, chunk, block, i, end, target);
-        i = end;
+            emission.cursors += block.place;
+        emission.indices = out.faces.indices.data();
+        emission.faceOffsets = out.faces.faceOffsets.data();
+        emitFaces(emission);
+        entry = faces.endEntry;
     }
+    if (!_countPoints) out.faces.vertices.resize(chunk.vertexCount * stride);
     emitClipped(plan, chunk, out);
+    return true;
 }
 
 void Slicer::emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
 {
-    const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
-    std::copy(chunk.vertices.begin(), chunk.vertices.end(),
-              out.faces.vertices.begin() +
-                  static_cast<std::ptrdiff_t>(chunk.clippedVertex * stride));
+    const std::size_t stride = plan.blocks->recordSize();
+    if (_countPoints)
+        std::copy_n(chunk.vertices.data(), chunk.valueCount,
+                    out.faces.vertices.data() + chunk.clippedVertex * stride);
     auto vertex = static_cast<std::uint32_t>(chunk.clippedVertex);
     for (std::size_t f = 0; f < chunk.bins.size(); ++f) {
         Count& cursor = chunk.clipped[chunk.bins[f]];

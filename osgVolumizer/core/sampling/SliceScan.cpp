@@ -1,12 +1,10 @@
-#include "Slicer.h"
+#include "SliceScan.h"
+
+#include "TetraCases.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
-
-#if defined(__x86_64__)
-#include <immintrin.h>
-#define OSGVOLUMIZER_AVX2 __attribute__((target("avx2")))
-#endif
 
 namespace osgVolumizer {
 namespace core {
@@ -15,11 +13,34 @@ namespace core {
 // are, and a branch on that number would be mispredicted half of the time. So two are always
 // written, and the end of the list moves on by the number that counts.
 
-namespace {
-
-void reserveMore(std::vector<std::uint64_t>& list, std::size_t size)
+PassedRange listLayers(const SlicePlan& plan, const TetraBlocks::Block& block, int base, int end,
+                       double* layers, int* passed)
 {
-    if (list.size() < size) list.resize(2 * size + 1024);
+    const TetraBlocks& blocks = *plan.blocks;
+    const double* record = blocks.record(block.firstVertex);
+    const std::size_t stride = blocks.recordSize();
+#if defined(OSGVOLUMIZER_DISPATCH_AVX2)
+    if (!plan.depths && avx2::available())
+        return avx2::listLayers(plan, record, stride, block.vertexCount, base, end, layers, passed);
+#endif
+    const std::uint32_t* sources = blocks.sourceVertices.data() + block.firstVertex;
+    PassedRange range{end - base, 0};
+    for (std::uint32_t i = 0; i < block.vertexCount; ++i, record += stride)
+        listLayer(plan, Slicer::depthOf(plan, record, sources[i]), base, end, layers[i], passed[i],
+                  range);
+    return range;
+}
+
+void packPassed(const int* passed, int highest, Slicer::Chunk& chunk)
+{
+    chunk.hasPassedBytes = false;
+#if defined(OSGVOLUMIZER_DISPATCH_AVX2)
+    if (highest > 0xff || !avx512::available()) return;
+    avx512::packPassed(passed, chunk);
+    chunk.hasPassedBytes = true;
+#else
+    (void)passed, (void)highest;
+#endif
 }
 
 void listFace(const TetraBlocks::Tetra& v, std::uint32_t t, const int* passed, Slicer::Chunk& chunk)
@@ -30,10 +51,10 @@ void listFace(const TetraBlocks::Tetra& v, std::uint32_t t, const int* passed, S
     const auto entry = [&](int k) {
         const unsigned mask =
             (a > k ? 1u : 0u) | (b > k ? 2u : 0u) | (c > k ? 4u : 0u) | (d > k ? 8u : 0u);
-        return std::uint64_t(std::uint32_t(k)) << 32 | std::uint64_t(t) << 8 | mask;
+        return static_cast<std::uint32_t>(k) << 14 | t << 4 | mask;
     };
-    reserveMore(chunk.entries, chunk.entryCount + n + 2);
-    std::uint64_t* e = chunk.entries.data() + chunk.entryCount;
+    growLarge(chunk.entries, chunk.entryCount + n + 2, chunk.entryCount);
+    std::uint32_t* e = chunk.entries.data() + chunk.entryCount;
     e[0] = entry(low);
     e[1] = entry(low + 1);
     for (std::size_t k = 2; k < n; ++k)
@@ -44,183 +65,28 @@ void listFace(const TetraBlocks::Tetra& v, std::uint32_t t, const int* passed, S
 void listEdge(const TetraBlocks::Edge& e, std::uint32_t i, const int* passed, Slicer::Chunk& chunk)
 {
     const int a = passed[e.a], b = passed[e.b];
-    const int low = std::min(a, b);
-    const auto n = static_cast<std::size_t>(std::max(a, b) - low);
-    const std::uint64_t ends =
-        a < b ? std::uint64_t(e.b) << 8 | e.a : std::uint64_t(e.a) << 8 | e.b;
-    reserveMore(chunk.points, chunk.pointCount + n + 2);
-    std::uint64_t* to = chunk.points.data() + chunk.pointCount;
-    to[0] = std::uint64_t(std::uint32_t(low)) << 32 | ends;
-    to[1] = std::uint64_t(std::uint32_t(low + 1)) << 32 | ends;
-    for (std::size_t k = 2; k < n; ++k)
-        to[k] = std::uint64_t(std::uint32_t(low) + k) << 32 | ends;
-    chunk.edgePoints[i] =
-        static_cast<std::uint32_t>(chunk.vertexCount + chunk.pointCount) - std::uint32_t(low);
+    const auto low = static_cast<std::uint32_t>(std::min(a, b));
+    const auto n = static_cast<std::uint32_t>(std::abs(a - b));
+    const std::uint32_t ends =
+        a < b ? e.a | std::uint32_t(e.b) << 8 : e.b | std::uint32_t(e.a) << 8;
+    growLarge(chunk.points, chunk.pointCount + n + 2, chunk.pointCount);
+    std::uint32_t* to = chunk.points.data() + chunk.pointCount;
+    to[0] = low << 16 | ends;
+    to[1] = (low + 1) << 16 | ends;
+    for (std::uint32_t k = 2; k < n; ++k)
+        to[k] = (low + k) << 16 | ends;
+    chunk.edgePoints[i] = static_cast<std::uint32_t>(chunk.vertexCount + chunk.pointCount) - low;
     chunk.pointCount += n;
 }
-
-#if defined(__x86_64__)
-
-/// Which of four numbers are greater than k, as bits.
-OSGVOLUMIZER_AVX2 inline __m256i beyond(__m256i a, __m256i b, __m256i c, __m256i d, __m256i k)
-{
-    const __m256i ab =
-        _mm256_or_si256(_mm256_and_si256(_mm256_cmpgt_epi32(a, k), _mm256_set1_epi32(1)),
-                        _mm256_and_si256(_mm256_cmpgt_epi32(b, k), _mm256_set1_epi32(2)));
-    const __m256i cd =
-        _mm256_or_si256(_mm256_and_si256(_mm256_cmpgt_epi32(c, k), _mm256_set1_epi32(4)),
-                        _mm256_and_si256(_mm256_cmpgt_epi32(d, k), _mm256_set1_epi32(8)));
-    return _mm256_or_si256(ab, cd);
-}
-
-/// Writes eight pairs of numbers high << 32 | low, where pair j is (low0, high0)[j] and
-/// (low1, high0 + 1)[j]; pair j goes to `to`, which then moves on by advance[j].
-OSGVOLUMIZER_AVX2 inline std::uint64_t* writePairs(__m256i low0, __m256i low1, __m256i high,
-                                                   __m256i advance, std::uint64_t* to)
-{
-    alignas(32) int n[8];
-    _mm256_store_si256(reinterpret_cast<__m256i*>(n), advance);
-    const __m256i next = _mm256_add_epi32(high, _mm256_set1_epi32(1));
-    const __m256i first = _mm256_unpacklo_epi32(low0, high),
-                  last = _mm256_unpackhi_epi32(low0, high);
-    const __m256i first1 = _mm256_unpacklo_epi32(low1, next),
-                  last1 = _mm256_unpackhi_epi32(low1, next);
-    const __m256i pairs[4] = {
-        _mm256_unpacklo_epi64(first, first1), _mm256_unpackhi_epi64(first, first1),
-        _mm256_unpacklo_epi64(last, last1), _mm256_unpackhi_epi64(last, last1)};
-    for (int j = 0; j < 4; ++j, to += n[j - 1])
-        _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm256_castsi256_si128(pairs[j]));
-    for (int j = 0; j < 4; ++j, to += n[j + 3])
-        _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm256_extracti128_si256(pairs[j], 1));
-    return to;
-}
-
-OSGVOLUMIZER_AVX2 void listFacesAvx2(const TetraBlocks::Tetra* tetrahedra, std::uint32_t t,
-                                     std::uint32_t end, const int* passed, Slicer::Chunk& chunk)
-{
-    const __m256i byte = _mm256_set1_epi32(0xff);
-    for (; t + 8 <= end; t += 8) {
-        const __m256i v = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(tetrahedra + t));
-        const __m256i a = _mm256_i32gather_epi32(passed, _mm256_and_si256(v, byte), 4);
-        const __m256i b =
-            _mm256_i32gather_epi32(passed, _mm256_and_si256(_mm256_srli_epi32(v, 8), byte), 4);
-        const __m256i c =
-            _mm256_i32gather_epi32(passed, _mm256_and_si256(_mm256_srli_epi32(v, 16), byte), 4);
-        const __m256i d = _mm256_i32gather_epi32(passed, _mm256_srli_epi32(v, 24), 4);
-        const __m256i low = _mm256_min_epi32(_mm256_min_epi32(a, b), _mm256_min_epi32(c, d));
-        const __m256i high = _mm256_max_epi32(_mm256_max_epi32(a, b), _mm256_max_epi32(c, d));
-        const __m256i n = _mm256_sub_epi32(high, low);
-        if (_mm256_movemask_epi8(_mm256_cmpgt_epi32(n, _mm256_set1_epi32(2)))) {
-            for (std::uint32_t i = t; i < t + 8; ++i)
-                listFace(tetrahedra[i], i, passed, chunk);
-            continue;
-        }
-        const __m256i number =
-            _mm256_slli_epi32(_mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(t)),
-                                               _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7)),
-                              8);
-        const __m256i next = _mm256_add_epi32(low, _mm256_set1_epi32(1));
-        reserveMore(chunk.entries, chunk.entryCount + 24);
-        std::uint64_t* to = chunk.entries.data() + chunk.entryCount;
-        chunk.entryCount += static_cast<std::size_t>(
-            writePairs(_mm256_or_si256(number, beyond(a, b, c, d, low)),
-                       _mm256_or_si256(number, beyond(a, b, c, d, next)), low, n, to) -
-            to);
-    }
-    for (; t < end; ++t)
-        listFace(tetrahedra[t], t, passed, chunk);
-}
-
-/// Loads eight edges and the numbers of surfaces that their ends have passed.
-struct EightEdges
-{
-    __m256i a, b, passedA, passedB;
-
-    OSGVOLUMIZER_AVX2 EightEdges(const TetraBlocks::Edge* edges, const int* passed)
-    {
-        const __m256i e =
-            _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(edges)));
-        a = _mm256_and_si256(e, _mm256_set1_epi32(0xff));
-        b = _mm256_srli_epi32(e, 8);
-        passedA = _mm256_i32gather_epi32(passed, a, 4);
-        passedB = _mm256_i32gather_epi32(passed, b, 4);
-    }
-};
-
-OSGVOLUMIZER_AVX2 std::size_t countPointsAvx2(const TetraBlocks::Edge* edges, std::uint32_t count,
-                                              const int* passed)
-{
-    // Eight sums of 32 bits: a block has few thousand edges, so 2^19 surfaces fit.
-    __m256i sum = _mm256_setzero_si256();
-    std::size_t r = 0;
-    std::uint32_t i = 0;
-    for (; i + 8 <= count; i += 8) {
-        const EightEdges e(edges + i, passed);
-        const __m256i n = _mm256_abs_epi32(_mm256_sub_epi32(e.passedA, e.passedB));
-        sum = _mm256_add_epi64(
-            sum, _mm256_add_epi64(_mm256_srli_epi64(n, 32),
-                                  _mm256_and_si256(n, _mm256_set1_epi64x(0xffffffff))));
-    }
-    alignas(32) std::uint64_t parts[4];
-    _mm256_store_si256(reinterpret_cast<__m256i*>(parts), sum);
-    for (const std::uint64_t part : parts)
-        r += part;
-    for (; i < count; ++i)
-        r += static_cast<std::size_t>(std::abs(passed[edges[i].a] - passed[edges[i].b]));
-    return r;
-}
-
-OSGVOLUMIZER_AVX2 void listPointsAvx2(const TetraBlocks::Edge* edges, std::uint32_t count,
-                                      const int* passed, Slicer::Chunk& chunk)
-{
-    std::uint32_t i = 0;
-    for (; i + 8 <= count; i += 8) {
-        const EightEdges e(edges + i, passed);
-        const __m256i low = _mm256_min_epi32(e.passedA, e.passedB);
-        const __m256i n = _mm256_sub_epi32(_mm256_max_epi32(e.passedA, e.passedB), low);
-        if (_mm256_movemask_epi8(_mm256_cmpgt_epi32(n, _mm256_set1_epi32(2)))) {
-            for (std::uint32_t k = i; k < i + 8; ++k)
-                listEdge(edges[k], k, passed, chunk);
-            continue;
-        }
-        const __m256i up = _mm256_cmpgt_epi32(e.passedB, e.passedA);
-        const __m256i farEnd = _mm256_blendv_epi8(e.b, e.a, up);
-        const __m256i nearEnd = _mm256_blendv_epi8(e.a, e.b, up);
-        const __m256i ends = _mm256_or_si256(farEnd, _mm256_slli_epi32(nearEnd, 8));
-        // Points before each edge: a prefix sum in halves of four, then across.
-        __m256i sum = _mm256_add_epi32(n, _mm256_slli_si256(n, 4));
-        sum = _mm256_add_epi32(sum, _mm256_slli_si256(sum, 8));
-        const __m256i lowerTotal = _mm256_permutevar8x32_epi32(sum, _mm256_set1_epi32(3));
-        sum = _mm256_add_epi32(sum, _mm256_blend_epi32(_mm256_setzero_si256(), lowerTotal, 0xf0));
-        const __m256i before = _mm256_sub_epi32(sum, n);
-        const auto first = static_cast<int>(chunk.vertexCount + chunk.pointCount);
-        _mm256_storeu_si256(
-            reinterpret_cast<__m256i*>(chunk.edgePoints.data() + i),
-            _mm256_sub_epi32(_mm256_add_epi32(before, _mm256_set1_epi32(first)), low));
-        reserveMore(chunk.points, chunk.pointCount + 24);
-        std::uint64_t* to = chunk.points.data() + chunk.pointCount;
-        chunk.pointCount += static_cast<std::size_t>(writePairs(ends, ends, low, n, to) - to);
-    }
-    for (; i < count; ++i)
-        listEdge(edges[i], i, passed, chunk);
-}
-
-bool hasAvx2()
-{
-    static const bool has = __builtin_cpu_supports("avx2");
-    return has;
-}
-
-#endif
-
-} // namespace
 
 void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t first, std::uint32_t count,
                const int* passed, Slicer::Chunk& chunk)
 {
-#if defined(__x86_64__)
-    if (hasAvx2()) {
-        listFacesAvx2(tetrahedra, first, first + count, passed, chunk);
+#if defined(OSGVOLUMIZER_DISPATCH_AVX2)
+    const std::uint32_t end = first + count;
+    if (chunk.hasPassedBytes) first = avx512::listFaces(tetrahedra, first, end, passed, chunk);
+    if (avx2::available()) {
+        avx2::listFaces(tetrahedra, first, end, passed, chunk);
         return;
     }
 #endif
@@ -230,8 +96,8 @@ void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t first, std::u
 
 std::size_t countPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed)
 {
-#if defined(__x86_64__)
-    if (hasAvx2()) return countPointsAvx2(edges, count, passed);
+#if defined(OSGVOLUMIZER_DISPATCH_AVX2)
+    if (avx2::available()) return avx2::countPoints(edges, count, passed);
 #endif
     std::size_t r = 0;
     for (std::uint32_t i = 0; i < count; ++i)
@@ -242,16 +108,45 @@ std::size_t countPoints(const TetraBlocks::Edge* edges, std::uint32_t count, con
 void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed,
                 Slicer::Chunk& chunk)
 {
-    if (chunk.edgePoints.size() < count) chunk.edgePoints.resize(count);
+    growLarge(chunk.edgePoints, count);
     chunk.pointCount = 0;
-#if defined(__x86_64__)
-    if (hasAvx2()) {
-        listPointsAvx2(edges, count, passed, chunk);
+#if defined(OSGVOLUMIZER_DISPATCH_AVX2)
+    if (chunk.hasPassedBytes) {
+        std::uint32_t i = avx512::listPoints(edges, count, passed, chunk);
+        for (; i < count; ++i)
+            listEdge(edges[i], i, passed, chunk);
+        return;
+    }
+    if (avx2::available()) {
+        avx2::listPoints(edges, count, passed, chunk);
         return;
     }
 #endif
     for (std::uint32_t i = 0; i < count; ++i)
         listEdge(edges[i], i, passed, chunk);
+}
+
+void emitFaces(const Emission& in)
+{
+#if defined(OSGVOLUMIZER_DISPATCH_AVX2)
+    if (avx2::available()) {
+        avx2::emitFaces(in);
+        return;
+    }
+#endif
+    for (const std::uint32_t* entry = in.entries; entry != in.endEntries; ++entry) {
+        const std::uint32_t e = *entry, surface = e >> 14, t = e >> 4 & 0x3ffu;
+        const TetraCase& which = TETRA_CASES[e & 15u];
+        std::size_t bin = std::size_t(surface) * in.brickCount;
+        if (in.places) bin += in.places[t] & TetraBlocks::BOX_MASK;
+        const Slicer::Count cursor = in.cursors[bin];
+        in.cursors[bin] = cursor + Slicer::count(1, static_cast<std::uint32_t>(which.count));
+        in.faceOffsets[Slicer::faceCount(cursor)] = Slicer::indexCount(cursor);
+        std::uint32_t* const to = in.indices + Slicer::indexCount(cursor);
+        const std::uint16_t* const edges = in.tetraEdges[t].e;
+        for (int k = 0; k < which.count; ++k)
+            to[k] = in.edgePoints[edges[which.edge[std::size_t(k)]]] + surface;
+    }
 }
 
 } // namespace core

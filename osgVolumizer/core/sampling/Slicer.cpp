@@ -1,6 +1,5 @@
-#include "Slicer.h"
-
-#include "TetraCases.h"
+#include "../LargePages.h"
+#include "SliceScan.h"
 
 #include <algorithm>
 #include <array>
@@ -17,16 +16,6 @@ namespace {
 constexpr std::size_t MAX_BINS = std::size_t(1) << 24;
 constexpr std::size_t BLOCKS_PER_CHUNK = 8; ///< fewer are not worth a task
 
-/// What one face of each case adds to its bin: 4 indices where two vertices are on either side,
-/// else
-/// 3. The cases without a face do not occur.
-constexpr std::array<Slicer::Count, 16> FACE_COUNTS = [] {
-    std::array<Slicer::Count, 16> counts{};
-    for (std::size_t mask = 0; mask < 16; ++mask)
-        counts[mask] = Slicer::count(1, static_cast<std::uint32_t>(TETRA_CASES[mask].count));
-    return counts;
-}();
-
 bool outside(const Box3d& box, const std::vector<Plane>& visible)
 {
     for (const Plane& p : visible) {
@@ -39,17 +28,40 @@ bool outside(const Box3d& box, const std::vector<Plane>& visible)
 }
 
 /// Whether a slice may coincide with a face in an upper plane of the clip box.
-bool flushFace(const TetraBlocks& blocks, const TetraBlocks::Block& block,
-               const TetraBlocks::Tetra& t, unsigned faces)
+bool flushFace(const double* layers, const TetraBlocks::Tetra& t, unsigned faces)
 {
     double f[4];
     for (int k = 0; k < 4; ++k)
-        f[k] = blocks.record(block.firstVertex + t.v[k])[blocks.recordSize() - 1];
+        f[k] = layers[t.v[k]];
     for (int i = 0; i < 4; ++i)
         if ((faces >> i & 1u) && f[(i + 1) % 4] == f[(i + 2) % 4] &&
             f[(i + 1) % 4] == f[(i + 3) % 4])
             return true;
     return false;
+}
+
+/// Adds up the faces per surface; the counts of neighbouring surfaces are `step` apart. Neighbours
+/// in the list mostly meet the same surface, and a count in memory that changes twice in a row
+/// costs a wait: so there are two counts of each surface.
+void countFaces(const std::uint32_t* entry, const std::uint32_t* end, int surfaces,
+                std::size_t step, Slicer::Count* counts)
+{
+    constexpr int MOST = 256;
+    if (surfaces > MOST) {
+        for (; entry != end; ++entry)
+            counts[(*entry >> 14) * step] += FACE_COUNTS[*entry & 15u];
+        return;
+    }
+    Slicer::Count even[MOST], odd[MOST];
+    std::fill_n(even, surfaces, 0);
+    std::fill_n(odd, surfaces, 0);
+    for (; end - entry >= 2; entry += 2) {
+        even[entry[0] >> 14] += FACE_COUNTS[entry[0] & 15u];
+        odd[entry[1] >> 14] += FACE_COUNTS[entry[1] & 15u];
+    }
+    if (entry != end) even[*entry >> 14] += FACE_COUNTS[*entry & 15u];
+    for (int k = 0; k < surfaces; ++k)
+        counts[static_cast<std::size_t>(k) * step] += even[k] + odd[k];
 }
 
 } // namespace
@@ -74,57 +86,56 @@ void Slicer::depthRange(const SlicePlan& plan, const TetraBlocks::Block& block, 
     farthest = middle + half;
 }
 
-void Slicer::countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t blockIndex)
+Slicer::BlockFaces Slicer::countBlock(const SlicePlan& plan, Chunk& chunk,
+                                      const TetraBlocks::Block& block)
 {
-    TetraBlocks& blocks = *plan.blocks;
-    const TetraBlocks::Block& block = blocks.blocks[blockIndex];
-    if (!plan.visible.empty() && outside(block.bounds, plan.visible)) return;
-    const std::size_t size = blocks.recordSize();
-    const int first = plan.firstSurface, last = first + plan.surfaceCount;
-    const double scale = 1.0 / plan.lattice.spacing;
+    const TetraBlocks& blocks = *plan.blocks;
+    int base = plan.firstSurface, end = base + plan.surfaceCount;
+    if (block.place == TetraBlocks::OUTSIDE) return {chunk.entryCount, base, 0};
+    if (!plan.visible.empty() && outside(block.bounds, plan.visible))
+        return {chunk.entryCount, base, 0};
     double nearest, farthest;
     depthRange(plan, block, nearest, farthest);
     const double layerMargin = 1e-9; // of a layer, for the rounding of what follows
-    if (!plan.primitive &&
-        surfacesPassed((plan.lattice.farDepth - farthest) * scale - layerMargin, first, last) ==
-            surfacesPassed((plan.lattice.farDepth - nearest) * scale + layerMargin, first, last))
-        return;
-    int* passed = _passed.data() + block.firstVertex;
-    int lowest = last, highest = first;
-    double* record = blocks.record(block.firstVertex);
-    for (std::uint32_t i = 0; i < block.vertexCount; ++i, record += size) {
-        const double depth = depthOf(plan, record, blocks.sourceVertices[block.firstVertex + i]);
-        const double f = (plan.lattice.farDepth - depth) * scale;
-        record[size - 1] = f;
-        passed[i] = surfacesPassed(f, first, last);
-        lowest = std::min(lowest, passed[i]);
-        highest = std::max(highest, passed[i]);
+    if (!plan.primitive) {           // which has layers of its own
+        const double scale = 1.0 / plan.lattice.spacing;
+        const int first = base, last = end;
+        base =
+            surfacesPassed((plan.lattice.farDepth - farthest) * scale - layerMargin, first, last);
+        end = surfacesPassed((plan.lattice.farDepth - nearest) * scale + layerMargin, first, last);
+        if (base == end) return {chunk.entryCount, base, 0};
     }
-    if (lowest == highest && !plan.primitive) return; // PRIMITIVE has layers of its own
+    double* layers = _layers.data() + block.firstVertex;
+    int* passed = _passed.data() + block.firstVertex;
+    const PassedRange range = listLayers(plan, block, base, end, layers, passed);
+    if (range.lowest >= range.highest && !plan.primitive) return {chunk.entryCount, base, 0};
 
+    packPassed(passed, range.highest, chunk);
     const std::size_t start = chunk.entryCount;
+    const bool general = plan.general() || range.highest > MAX_BLOCK_SURFACES;
     const TetraBlocks::Tetra* tetra = blocks.tetrahedra.data() + block.firstTetra;
-    const TetraBlocks::Place* place =
-        blocks.places.empty() ? nullptr : blocks.places.data() + block.firstTetra;
-    if (!place && !plan.general()) {
+    if (block.place != TetraBlocks::CLIP && !general) {
         listFaces(tetra, 0, block.tetraCount, passed, chunk);
     } else {
         // Runs of tetrahedra that are whole in their boxes go the fast way.
         std::uint32_t runStart = 0;
         for (std::uint32_t t = 0; t < block.tetraCount; ++t) {
-            const TetraBlocks::Place p = place ? place[t] : 0;
+            const TetraBlocks::Place p = block.place == TetraBlocks::CLIP
+                                             ? blocks.places[block.firstTetra + t]
+                                             : block.place;
             const bool flush = p < TetraBlocks::OUTSIDE && p > TetraBlocks::BOX_MASK &&
-                               flushFace(blocks, block, tetra[t], p >> TetraBlocks::FACE_SHIFT);
-            if (p < TetraBlocks::OUTSIDE && !flush && !plan.general()) continue;
+                               flushFace(layers, tetra[t], p >> TetraBlocks::FACE_SHIFT);
+            if (p < TetraBlocks::OUTSIDE && !flush && !general) continue;
             listFaces(tetra, runStart, t - runStart, passed, chunk);
             runStart = t + 1;
-            if (p != TetraBlocks::OUTSIDE) clipTetra(plan, block, tetra[t], chunk);
+            if (p != TetraBlocks::OUTSIDE) clipTetra(plan, block, t, layers, chunk);
         }
         listFaces(tetra, runStart, block.tetraCount - runStart, passed, chunk);
     }
-    if (chunk.entryCount > start)
+    if (_countPoints && chunk.entryCount > start)
         chunk.vertexCount +=
             countPoints(blocks.edges.data() + block.firstEdge, block.edgeCount, passed);
+    return {chunk.entryCount, base, range.highest};
 }
 
 void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
@@ -135,31 +146,31 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
     chunk.clipped.assign(bins, 0);
     chunk.entryCount = 0;
     chunk.vertexCount = 0;
-    chunk.blockEntries.clear();
+    chunk.blockFaces.clear();
     chunk.bins.clear();
     chunk.sizes.clear();
-    chunk.vertices.clear();
+    chunk.valueCount = 0;
     chunk.spacings.clear();
     const TetraBlocks& blocks = *plan.blocks;
-    const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
-    const int* const rank = plan.rank;
-    const auto firstSurface = static_cast<std::uint32_t>(plan.firstSurface);
+    const auto brickCount = static_cast<std::size_t>(plan.brickCount);
     for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
+        const TetraBlocks::Block& block = blocks.blocks[b];
         const std::size_t start = chunk.entryCount;
-        countBlock(plan, chunk, b);
-        chunk.blockEntries.push_back(chunk.entryCount);
-        const TetraBlocks::Place* const places =
-            blocks.places.empty() ? nullptr : blocks.places.data() + blocks.blocks[b].firstTetra;
-        Count* const counts = chunk.fast.data();
-        const std::uint64_t* const end = chunk.entries.data() + chunk.entryCount;
-        for (const std::uint64_t* entry = chunk.entries.data() + start; entry != end; ++entry) {
-            const std::uint64_t e = *entry;
-            std::size_t bin = static_cast<std::uint32_t>(rank[(e >> 32) - firstSurface]);
-            if (places)
-                bin = bin * brickCount +
-                      (places[static_cast<std::uint32_t>(e) >> 8] & TetraBlocks::BOX_MASK);
-            counts[bin] += FACE_COUNTS[e & 15u];
+        const BlockFaces faces = countBlock(plan, chunk, block);
+        chunk.blockFaces.push_back(faces);
+        Count* counts = chunk.fast.data() +
+                        static_cast<std::size_t>(faces.base - plan.firstSurface) * brickCount;
+        const std::uint32_t* entry = chunk.entries.data() + start;
+        const std::uint32_t* const end = chunk.entries.data() + chunk.entryCount;
+        if (block.place != TetraBlocks::CLIP) {
+            countFaces(entry, end, faces.highest, brickCount, counts + block.place);
+            continue;
         }
+        const TetraBlocks::Place* const places = blocks.places.data() + block.firstTetra;
+        for (; entry != end; ++entry)
+            counts[(*entry >> 14) * brickCount +
+                   (places[*entry >> 4 & 0x3ffu] & TetraBlocks::BOX_MASK)] +=
+                FACE_COUNTS[*entry & 15u];
     }
     for (std::size_t f = 0; f < chunk.bins.size(); ++f)
         chunk.clipped[chunk.bins[f]] += count(1, chunk.sizes[f]);
@@ -174,24 +185,28 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
             indices += indexCount(n), faces += faceCount(n);
         for (const Count n : _chunks[c].clipped)
             indices += indexCount(n), faces += faceCount(n);
+        _chunks[c].clippedVertex = vertices;
+        vertices += _chunks[c].valueCount / stride;
+    }
+    for (std::size_t c = 0; c < chunkCount; ++c) {
         const std::size_t own = _chunks[c].vertexCount;
         _chunks[c].vertexCount = vertices;
         vertices += own;
     }
-    for (std::size_t c = 0; c < chunkCount; ++c) {
-        _chunks[c].clippedVertex = vertices;
-        vertices += _chunks[c].vertices.size() / stride;
-    }
     if (indices > 0xffffffffu || vertices > 0xffffffffu) return false;
     out.faces.format = plan.blocks->format();
-    out.faces.vertices.resize(vertices * stride);
-    out.faces.indices.resize(indices);
-    out.faces.faceOffsets.resize(faces + 1);
+    if (_countPoints) resizeLarge(out.faces.vertices, vertices * stride);
+    resizeLarge(out.faces.indices, indices);
+    resizeLarge(out.faces.faceOffsets, faces + 1);
     out.faceSpacings.resize(plan.primitive ? faces : 0);
     out.ranges.resize(static_cast<std::size_t>(plan.surfaceCount) *
                       static_cast<std::size_t>(plan.brickCount));
     Count at = 0;
-    for (std::size_t bin = 0; bin < out.ranges.size(); ++bin) {
+    const auto brickCount = static_cast<std::size_t>(plan.brickCount);
+    for (std::size_t place = 0; place < out.ranges.size(); ++place) {
+        const std::size_t bin =
+            static_cast<std::size_t>(plan.order[place / brickCount]) * brickCount +
+            place % brickCount;
         const Count start = at;
         for (std::size_t c = 0; c < chunkCount; ++c) {
             const Count n = _chunks[c].fast[bin];
@@ -203,8 +218,8 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
             _chunks[c].clipped[bin] = at;
             at += n;
         }
-        out.ranges[bin] = {faceCount(start), faceCount(at) - faceCount(start), indexCount(start),
-                           indexCount(at) - indexCount(start)};
+        out.ranges[place] = {faceCount(start), faceCount(at) - faceCount(start), indexCount(start),
+                             indexCount(at) - indexCount(start)};
     }
     out.faces.faceOffsets[faces] = static_cast<std::uint32_t>(indices);
     return true;
@@ -241,13 +256,25 @@ try {
         else
             executor->run(static_cast<int>(chunkCount), std::cref(task));
     };
-    _passed.resize(plan.blocks->sourceVertices.size());
+    // Some more, so that the last block's may be read in groups as well.
+    resizeLarge(_passed, plan.blocks->sourceVertices.size() + TetraBlocks::MAX_VERTICES);
+    resizeLarge(_layers, plan.blocks->sourceVertices.size());
+    // One chunk puts its points into their place as it goes; several have to know where each
+    // begins. Those of clipped faces come first.
+    _countPoints = chunkCount > 1;
+    if (!_countPoints) _chunks[0].vertices.swap(out.faces.vertices);
     forAll([&](int c) { countChunk(plan, _chunks[static_cast<std::size_t>(c)]); });
-    if (!placeBins(plan, chunkCount, out))
-        return {ErrorCode::TOO_LARGE, "polygonize: the faces have more than 2^32 corners."};
-    forAll([&](int c) { emitChunk(plan, _chunks[static_cast<std::size_t>(c)], out); });
-    return {};
+    if (!_countPoints) _chunks[0].vertices.swap(out.faces.vertices);
+    bool fits = placeBins(plan, chunkCount, out);
+    if (fits && chunkCount == 1)
+        fits = emitChunk(plan, _chunks[0], out);
+    else if (fits)
+        forAll([&](int c) { emitChunk(plan, _chunks[static_cast<std::size_t>(c)], out); });
+    if (fits) return {};
+    out = PolygonizedFaces();
+    return {ErrorCode::TOO_LARGE, "polygonize: the faces have more than 2^32 corners."};
 } catch (const std::bad_alloc&) {
+    out = PolygonizedFaces();
     return {ErrorCode::TOO_LARGE, "polygonize: the faces do not fit in memory."};
 }
 

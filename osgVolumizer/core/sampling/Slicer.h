@@ -7,17 +7,24 @@
 #include "Polygonize.h"
 #include "SurfaceFamily.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace osgVolumizer {
 namespace core {
 
+/// Where the depths of a tetrahedron end.
+struct DepthRange
+{
+    double nearest, farthest;
+};
+
 /// What one pass over a blocked tetra set has to know. Depths are relative to an anchor, positions
 /// and clip boxes to the origin of the blocks.
 struct SlicePlan
 {
-    TetraBlocks* blocks = nullptr; ///< the spare value of each record receives the layer coordinate
+    const TetraBlocks* blocks = nullptr;
     const BoxIndex* boxes = nullptr;
     /// Depth of a vertex: dot(gradient, field - corner), unless `depths` gives it per source
     /// vertex.
@@ -27,9 +34,12 @@ struct SlicePlan
     const double* depths = nullptr;
     SurfaceLattice lattice;
     int firstSurface = 0, surfaceCount = 0; ///< those that get faces
-    const int* rank = nullptr;              ///< place in the output of surface firstSurface + i
+    const int* order = nullptr; ///< place i of the output is for surface firstSurface + order[i]
     int brickCount = 1;
     bool primitive = false;
+    /// PRIMITIVE: the depths over which the layers of each source tetrahedron are spread, where
+    /// those are not its own because it is a piece of another; or null.
+    const DepthRange* primitiveRanges = nullptr;
     /// Convex pieces, as half-spaces relative to the origin, that faces are cut down to; or null.
     const std::vector<std::vector<Plane>>* pieces = nullptr;
     /// Whether every face needs the general way.
@@ -47,8 +57,8 @@ class Slicer
 public:
     /// TOO_LARGE for more pairs of surface and brick than there is room for.
     static Status checkSize(const SlicePlan& plan);
-    /// Expects checkSize(). Fills faces, ranges and faceSpacings of `out`; leaves it alone on
-    /// failure (TOO_LARGE).
+    /// Expects checkSize(). Fills faces, ranges and faceSpacings of `out`. TOO_LARGE where they
+    /// have too many corners or do not fit in memory; `out` is empty then.
     Status run(const SlicePlan& plan, Executor* executor, PolygonizedFaces& out);
 
     /// Depth of a vertex, from its record.
@@ -65,7 +75,8 @@ public:
     static void depthRange(const SlicePlan& plan, const TetraBlocks::Block& block, double& nearest,
                            double& farthest);
 
-    /// Faces and indices of a bin in one number, so that one addition counts both.
+    /// Faces and indices of a bin in one number, so that one addition counts both. A bin is a pair
+    /// of surface and brick: (surface - firstSurface) * brickCount + brick.
     using Count = std::uint64_t;
     static constexpr Count count(std::uint32_t faces, std::uint32_t indices)
     {
@@ -74,63 +85,62 @@ public:
     static std::uint32_t faceCount(Count c) { return static_cast<std::uint32_t>(c >> 32); }
     static std::uint32_t indexCount(Count c) { return static_cast<std::uint32_t>(c); }
 
+    /// What the first pass leaves to the second about a block.
+    struct BlockFaces
+    {
+        std::size_t endEntry = 0; ///< in Chunk::entries
+        int base = 0;             ///< the surface that entries and points count from
+        int highest = 0;          ///< the most that a vertex has passed, from there on
+    };
+    /// A block that spans more surfaces takes the general way, so that 16 bits hold the number.
+    static constexpr int MAX_BLOCK_SURFACES = 0xffff;
+
     /// The share of one thread: neighbouring blocks.
     struct Chunk
     {
         std::uint32_t firstBlock = 0, endBlock = 0;
-        /// Faces to make, block after block: surface << 32 | tetrahedron of the block << 8 | case.
-        std::vector<std::uint64_t> entries;
+        /// Faces to make, block after block: surface << 14 | tetrahedron of the block << 4 | case.
+        std::vector<std::uint32_t> entries;
         std::size_t entryCount = 0;
-        /// Per block, the end of its entries; points are made only where there are any.
-        std::vector<std::size_t> blockEntries;
-        std::vector<Count> fast, clipped; ///< per bin: first counts, then cursors
-        std::size_t vertexCount = 0;      ///< shared points, first their number, then the next
-        std::size_t clippedVertex = 0;    ///< where the points of clipped faces begin
-        // Faces that were clipped, in the order of making.
+        std::vector<BlockFaces> blockFaces; ///< points are made only where there are any
+        std::vector<Count> fast, clipped;   ///< per bin: first counts, then cursors
+        std::size_t vertexCount = 0;        ///< shared points, first their number, then the next
+        std::size_t clippedVertex = 0;      ///< where the points of clipped faces begin
+        // Faces that were clipped, in the order of making. The vertices of a chunk that is alone
+        // are in their place already.
         std::vector<std::uint32_t> bins;
         std::vector<std::uint16_t> sizes;
         std::vector<float> vertices;
+        std::size_t valueCount = 0; ///< in `vertices`
         std::vector<float> spacings;
-        RecordPolygon whole, part, uncut;
-        // Scratch of one block: its points (surface << 32 | near vertex << 8 | far vertex), and for
-        // each edge the number of its point on surface 0, if it had one.
-        std::vector<std::uint64_t> points;
+        RecordPolygon polygon;
+        RecordPolygon::Shape whole, uncut; ///< before it is cut to a box, and to a piece
+        /// Scratch of one block: its points (surface << 16 | near vertex << 8 | far vertex), and
+        /// for each edge the number of its point on surface 0, if it had one.
+        std::vector<std::uint32_t> points;
         std::size_t pointCount = 0;
         std::vector<std::uint32_t> edgePoints;
+        std::vector<double> weights;
+        /// How many surfaces the block's vertices have passed, where all numbers fit into bytes and
+        /// the processor can look them up; see packPassed().
+        alignas(64) std::array<std::uint8_t, TetraBlocks::MAX_VERTICES> passedBytes;
+        bool hasPassedBytes = false;
     };
 
 private:
     void countChunk(const SlicePlan& plan, Chunk& chunk);
-    void countBlock(const SlicePlan& plan, Chunk& chunk, std::uint32_t block);
+    BlockFaces countBlock(const SlicePlan& plan, Chunk& chunk, const TetraBlocks::Block& block);
     bool placeBins(const SlicePlan& plan, std::size_t chunkCount, PolygonizedFaces& out);
-    void emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
+    bool emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
     void emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
 
     std::vector<Chunk> _chunks;
+    bool _countPoints = false; ///< first pass: whether it has to, since chunks share the vertices
+    // Per vertex of the blocks:
+    std::vector<double> _layers; ///< layer coordinate: surface k is at k + 1/2
     std::vector<int>
-        _passed; ///< per vertex of the blocks: surfaces on the near side of which it is
+        _passed; ///< surfaces from the block's base on, on the near side of which it is
 };
-
-/// Appends an entry to the chunk for every surface that meets one of `count` tetrahedra of a block,
-/// beginning with number `first`. `passed` belongs to the block's vertices.
-void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t first, std::uint32_t count,
-               const int* passed, Slicer::Chunk& chunk);
-
-/// How many points the edges of a block get.
-std::size_t countPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed);
-
-/// Fills chunk.points and chunk.edgePoints for the edges of a block.
-void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed,
-                Slicer::Chunk& chunk);
-
-/// Makes chunk.points, in vector registers as wide as the processor has.
-void writePoints(const TetraBlocks& blocks, const TetraBlocks::Block& block,
-                 const Slicer::Chunk& chunk, float* to);
-
-/// Cuts one tetrahedron the general way, clips the faces to the boxes and appends them to the
-/// chunk. Expects the layer coordinates in the records.
-void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block,
-               const TetraBlocks::Tetra& tetra, Slicer::Chunk& chunk);
 
 /// Number of surfaces on the near side of which a vertex with layer coordinate f lies. Surface k is
 /// at k + 1/2, and a vertex on it belongs to its far side. The subtraction is exact wherever the
@@ -144,6 +154,12 @@ inline int surfacesPassed(double f, int first, int last)
     const int n = static_cast<int>(g);
     return n + (g > n ? 1 : 0);
 }
+
+/// Cuts one tetrahedron the general way, clips the faces to the boxes and appends them to the
+/// chunk.
+/// \param layers layer coordinates of the block's vertices
+void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block, std::uint32_t tetrahedron,
+               const double* layers, Slicer::Chunk& chunk);
 
 } // namespace core
 } // namespace osgVolumizer
