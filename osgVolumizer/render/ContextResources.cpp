@@ -44,6 +44,13 @@ void deleteNames(ContextResources& resources, osg::GLExtensions& gl)
     for (GLuint* name : {&buffers.framebuffer, &buffers.layerFramebuffer, &layers.sortedFramebuffer,
                          &layers.rankFramebuffer, &resources.rays.framebuffer})
         if (*name) gl.glDeleteFramebuffers(1, name);
+    CaptureBuffers& capture = resources.capture;
+    if (capture.queries[0]) {
+        gl.glDeleteFramebuffers(CaptureBuffers::MAXIMUM_SLOTS, capture.framebuffers);
+        gl.glDeleteFramebuffers(1, &capture.sortedFramebuffer);
+        gl.glDeleteFramebuffers(1, &capture.restFramebuffer);
+        gl.glDeleteQueries(CaptureBuffers::MAXIMUM_SLOTS, capture.queries);
+    }
     if (layers.queries[0]) {
         gl.glDeleteFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
         gl.glDeleteQueries(LayerBuffers::COUNT, layers.queries);

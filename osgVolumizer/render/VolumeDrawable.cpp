@@ -106,8 +106,10 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
 }
 
 void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRays& rays,
-                      const ProgramFeatures& features, const AccumulationBuffers& buffers)
+                      const VolumeLook& look, const ContextResources& resources)
 {
+    const ProgramFeatures& features = look.features;
+    const AccumulationBuffers& buffers = resources.accumulation;
     if (!buffers.opaqueDepth) return;
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
     if (features.layerDepth)
@@ -115,6 +117,11 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
     if (features.ranked) {
         state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.layers.sorted[0].get());
         state.applyTextureAttribute(UNIT_SORTED_NEAR, buffers.layers.sorted[1].get());
+    }
+    if (features.slotCount > 0) {
+        state.applyTextureAttribute(UNIT_SORTED_FAR, resources.capture.sorted.get());
+        state.applyTextureAttribute(UNIT_SORTED_NEAR, resources.capture.colors.get());
+        uniforms.set("surfaceWeights", look.surfaceWeights);
     }
     uniforms.set("depthTextureScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
                                                 1.0f / static_cast<float>(buffers.height)));
@@ -231,7 +238,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     setLook(uniforms, *_look, *rays);
     if (_look->features.shading) setShading(uniforms, *_look, *rays, toEye, state);
     if (_look->features.opaqueDepth)
-        setDepthTextures(state, uniforms, *rays, _look->features, resources->accumulation);
+        setDepthTextures(state, uniforms, *rays, *_look, *resources);
     if (_look->table.texture) state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
     setPaints(state, uniforms, _look->paints, UNIT_FIRST_PAINT);
     // Gathered values hide nothing, so they need no order, and no parts.

@@ -30,6 +30,9 @@ struct ProgramFeatures
     VolumeAppearance::RayFunction rayFunction = VolumeAppearance::COMPOSITE;
     bool shading = false;
     bool gradientTexture = false; ///< brick textures hold gradients besides values
+    /// Slots of captured surfaces that are composited while marching, over all pixels of an area;
+    /// multiple of 4. Expects opaqueDepth, one brick, and the whole depth of the volume.
+    int slotCount = 0;
     int paintCount = 0;           ///< bricks of volumes that paint this one; no more than 4
     int planeCount = 0;           ///< half-spaces that end the segment, besides the clip box
 
@@ -44,6 +47,7 @@ struct ProgramFeatures
     std::uint64_t key() const
     {
         std::uint64_t result = static_cast<std::uint64_t>(planeCount) << 3;
+        result = (result | static_cast<std::uint64_t>(slotCount / 4)) << 3;
         result = (result | static_cast<std::uint64_t>(paintCount)) << 3 |
                  static_cast<std::uint64_t>(rayFunction);
         for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth,
