@@ -4,6 +4,7 @@
 #include "Look.h"
 #include "Matrices.h"
 #include "Merger.h"
+#include "SliceCache.h"
 #include "Statistics.h"
 #include "VolumeInstance.h"
 
@@ -69,6 +70,7 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     if (!volume->prepared) return;
     if (!voxels && volume->prepared->tetras.vertices.format().colorSize == 0) return;
     volume->sampling = appearance->getSamplingParameters();
+    volume->viewId = viewIdOf(visitor);
     if (voxels && !volume->prepared->voxelFrame) {
         const osg::Vec3d s = voxels->getSpacing();
         volume->sampling.voxelSize = {s.x(), s.y(), s.z()};

@@ -46,7 +46,7 @@ bool GroupComposer::prepare(VolumeInstance& instance, PreparedVolume& volume)
     const bool mergeable = _group.volumes.size() > 1 || !_group.surfaces.empty();
     volume.sliced.reset(new SlicedVolume);
     const Status status = volume.sliced->polygonize(instance, volume.view, mergeable);
-    ++_counts.polygonizations;
+    if (volume.sliced->polygonized()) ++_counts.polygonizations;
     if (!status) reportError(status);
     return status.ok();
 }
@@ -533,7 +533,7 @@ void GroupComposer::addVolume(PreparedVolume& volume, std::shared_ptr<const Volu
     if (mesh->batches.empty()) return;
     VolumeInstance& instance = *volume.instance;
     _counts.faces += mesh->faceCount;
-    _counts.polygons += static_cast<double>(mesh->indices.size() / 3);
+    _counts.polygons += static_cast<double>(mesh->indexArray().size() / 3);
     ++_counts.volumeLeaves;
     osg::ref_ptr<VolumeDrawable> drawable = new VolumeDrawable;
     drawable->set(std::move(mesh), look);

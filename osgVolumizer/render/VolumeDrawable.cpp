@@ -141,10 +141,12 @@ public:
     {
         state.lazyDisablingOfVertexAttributes();
         state.applyDisablingOfVertexAttributes();
-        resources.vertices.stream(gl, GL_ARRAY_BUFFER_ARB, mesh.vertices.data(),
-                                  mesh.vertices.size() * sizeof(float));
-        resources.indices.stream(gl, GL_ELEMENT_ARRAY_BUFFER_ARB, mesh.indices.data(),
-                                 mesh.indices.size() * sizeof(unsigned));
+        const std::vector<float>& vertices = mesh.vertexArray();
+        const std::vector<unsigned>& indices = mesh.indexArray();
+        resources.vertices.stream(gl, GL_ARRAY_BUFFER_ARB, vertices.data(),
+                                  vertices.size() * sizeof(float));
+        resources.indices.stream(gl, GL_ELEMENT_ARRAY_BUFFER_ARB, indices.data(),
+                                 indices.size() * sizeof(unsigned));
         enable(ATTRIBUTE_POSITION, 3, mesh.positionOffset, mesh.stride);
         if (mesh.slabOffset >= 0) enable(ATTRIBUTE_SLAB, 2, mesh.slabOffset, mesh.stride);
         if (mesh.voxelCoordinateOffset >= 0)

@@ -43,6 +43,11 @@ struct VolumeMesh
     std::vector<unsigned> indices;
     std::vector<BrickBatch> batches;
     unsigned faceCount = 0;
+    /// A mesh that is kept from frame to frame, whose vertices and indices these are; or null.
+    std::shared_ptr<const VolumeMesh> arrays;
+
+    const std::vector<float>& vertexArray() const { return arrays ? arrays->vertices : vertices; }
+    const std::vector<unsigned>& indexArray() const { return arrays ? arrays->indices : indices; }
 };
 
 /// All that a volume's fragments are shaded with, besides brick and view.

@@ -36,6 +36,7 @@ struct VolumeInstance
     osg::ref_ptr<VolumeDrawable> drawable; ///< of the leaf that stands for the volume until sorting
     std::vector<SelectedBrick> bricks;
     core::SamplingParameters sampling;
+    std::uint64_t viewId = 0; ///< see viewIdOf()
 
     // Known once sorting begins:
     osgUtil::RenderLeaf* leaf = nullptr;
