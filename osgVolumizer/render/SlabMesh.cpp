@@ -158,7 +158,8 @@ std::shared_ptr<const VolumeMesh> screenMesh(const VolumeInstance& volume)
     const double reference = volume.look->referenceDepth;
     const float nearest = static_cast<float>(volume.depth.nearDepth - reference),
                 farthest = static_cast<float>(volume.depth.farDepth - reference);
-    for (const glm::vec2 corner : {glm::vec2(-1.0f), glm::vec2(3.0f, -1.0f), glm::vec2(-1.0f, 3.0f)})
+    for (const glm::vec2 corner :
+         {glm::vec2(-1.0f), glm::vec2(3.0f, -1.0f), glm::vec2(-1.0f, 3.0f)})
         mesh->vertices.insert(mesh->vertices.end(), {corner.x, corner.y, 0.0f, nearest, farthest});
     mesh->indices = {0, 1, 2};
     mesh->batches.push_back(batchOf(volume.bricks.front()));

@@ -239,8 +239,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     uniforms.set("frameToClip", projection * toEye);
     setLook(uniforms, *_look, *rays);
     if (_look->features.shading) setShading(uniforms, *_look, *rays, toEye, state);
-    if (_look->features.opaqueDepth)
-        setDepthTextures(state, uniforms, *rays, *_look, *resources);
+    if (_look->features.opaqueDepth) setDepthTextures(state, uniforms, *rays, *_look, *resources);
     if (_look->table.texture) state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
     setPaints(state, uniforms, _look->paints, UNIT_FIRST_PAINT);
     // Gathered values hide nothing, so they need no order, and no parts.

@@ -64,11 +64,11 @@ struct VolumeLook
     glm::dmat3 frameToUnits{1.0};         ///< frame vector -> opacity units
     glm::dvec3 center{0.0};               ///< frame; the middle of the volume
     double referenceDepth = 0.0;          ///< eye units; depths of slabs are counted from here
-    double step = 1.0;                ///< between samples or slices: depth, distance or frame units
-    glm::dvec3 surfaceNormal{0.0};    ///< slices: frame units; along which `step` is counted
-    bool inFrontOfLayer = false;      ///< slabs: which part of a segment split by surfaces
+    double step = 1.0;              ///< between samples or slices: depth, distance or frame units
+    glm::dvec3 surfaceNormal{0.0};  ///< slices: frame units; along which `step` is counted
+    bool inFrontOfLayer = false;    ///< slabs: which part of a segment split by surfaces
     glm::vec2 surfaceWeights{0.0f}; ///< captured surfaces: 1 if colour, alpha is weighted by alpha
-    int rank = 0;                     ///< slabs: between which ranks of surfaces
+    int rank = 0;                   ///< slabs: between which ranks of surfaces
     std::vector<glm::ivec4> scissors; ///< window rectangles to draw in; none: everywhere
     int maximumSteps = 1;
     glm::vec3 regionMin{0.0f}, regionMax{0.0f}; ///< slabs: box of the whole volume (frame)

@@ -39,7 +39,8 @@ std::string header(const ProgramFeatures& features)
                                             "AVERAGE",   "SUM",     "ISOSURFACE"};
     define(true, functions[features.rayFunction]);
     define(features.paintCount > 0, "PAINTED");
-    if (features.slotCount > 0) text += "#define SLOTS " + std::to_string(features.slotCount) + "\n";
+    if (features.slotCount > 0)
+        text += "#define SLOTS " + std::to_string(features.slotCount) + "\n";
     define(features.shading, "SHADING");
     define(features.gradientTexture, "GRADIENT_TEXTURE");
     define(features.smoothTable, "SMOOTH_TABLE");
@@ -76,8 +77,8 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     constexpr GLenum SOURCE1_COLOR = 0x88F9;
     const bool captured = features.slotCount > 0;
     set->setAttributeAndModes(
-        new osg::BlendFunc(osg::BlendFunc::ONE, captured ? SOURCE1_COLOR
-                                                         : GLenum(GL_ONE_MINUS_SRC_ALPHA)),
+        new osg::BlendFunc(osg::BlendFunc::ONE,
+                           captured ? SOURCE1_COLOR : GLenum(GL_ONE_MINUS_SRC_ALPHA)),
         StateAttribute::ON);
     set->setAttributeAndModes(
         new osg::Depth(captured ? osg::Depth::ALWAYS : osg::Depth::LEQUAL, 0.0, 1.0, false),
