@@ -45,6 +45,8 @@ public:
     bool isDepthKept() const { return _depthKept; }
     /// The buffers of sorted layers, made when first asked for, with the target's colour.
     LayerBuffers& layerBuffers(osg::State& state);
+    /// The buffers of captured surfaces, with at least so many slots.
+    CaptureBuffers& captureBuffers(osg::State& state, int slotCount);
 
 private:
     bool needsTarget(const ContextResources& resources) const;

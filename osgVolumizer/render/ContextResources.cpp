@@ -44,6 +44,13 @@ void deleteNames(ContextResources& resources, osg::GLExtensions& gl)
     for (GLuint* name : {&buffers.framebuffer, &buffers.layerFramebuffer, &layers.sortedFramebuffer,
                          &layers.rankFramebuffer, &resources.rays.framebuffer})
         if (*name) gl.glDeleteFramebuffers(1, name);
+    CaptureBuffers& capture = resources.capture;
+    if (capture.queries[0]) {
+        gl.glDeleteFramebuffers(CaptureBuffers::MAXIMUM_SLOTS, capture.framebuffers);
+        gl.glDeleteFramebuffers(1, &capture.sortedFramebuffer);
+        gl.glDeleteFramebuffers(1, &capture.restFramebuffer);
+        gl.glDeleteQueries(CaptureBuffers::MAXIMUM_SLOTS, capture.queries);
+    }
     if (layers.queries[0]) {
         gl.glDeleteFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
         gl.glDeleteQueries(LayerBuffers::COUNT, layers.queries);
@@ -84,7 +91,7 @@ private:
 
 } // namespace
 
-ContextResources::ContextResources()
+ContextResources::ContextResources(osg::State& state) : limits(queryContextLimits(state))
 {
     osg::setGLExtensionFuncPtr(glGetFramebufferAttachmentParameteriv,
                                "glGetFramebufferAttachmentParameteriv",
@@ -109,7 +116,7 @@ std::shared_ptr<ContextResources> contextResources(osg::State& state)
     std::lock_guard<std::mutex> lock(registryMutex());
     std::shared_ptr<ContextResources>& entry = registry()[state.getContextID()];
     if (!entry) {
-        entry = std::make_shared<ContextResources>();
+        entry = std::make_shared<ContextResources>(state);
         osg::get<ContextWatch>(state.getContextID());
     }
     return entry;

@@ -14,7 +14,8 @@ namespace render {
 
 std::string shaderSource(const std::string& name); // generated from shaders/*.glsl
 
-osg::ref_ptr<osg::StateSet> screenState(const std::string& fragmentShader, bool writeDepth)
+osg::ref_ptr<osg::StateSet> screenState(const std::string& fragmentShader, bool writeDepth,
+                                        const std::string& code)
 {
     osg::ref_ptr<osg::Program> program = new osg::Program;
     program->setName("osgVolumizer " + fragmentShader);
@@ -22,7 +23,7 @@ osg::ref_ptr<osg::StateSet> screenState(const std::string& fragmentShader, bool 
     program->addShader(
         new osg::Shader(osg::Shader::VERTEX, version + shaderSource("screen.vert.glsl")));
     program->addShader(
-        new osg::Shader(osg::Shader::FRAGMENT, version + shaderSource(fragmentShader)));
+        new osg::Shader(osg::Shader::FRAGMENT, version + code + shaderSource(fragmentShader)));
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
     set->setAttributeAndModes(program, FORCE_ON);
     set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, writeDepth), FORCE_ON);

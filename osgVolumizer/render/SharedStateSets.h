@@ -16,7 +16,13 @@ enum class SharedState : std::uint64_t
     CLEAR,
     ACCUMULATION,
     DEPTH,
-    LAYER_SURFACES ///< and the following
+    NEAREST_SLOT,
+    FILL_REST,
+    CLEAR_SLOT,
+    LAYER_SURFACES = SORT + 1000, ///< these and the following
+    SORT_SLOTS = SORT + 2000,
+    CAPTURED_SURFACES = SORT + 3000,
+    REST_SURFACES = SORT + 4000
 };
 
 /// State sets that all volumes, views and contexts share, made when first asked for. Thread safe.

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <typeinfo>
@@ -162,6 +163,33 @@ std::unique_ptr<SurfaceMesh> SurfaceMesh::of(const ForeignLeaf& foreign)
     view.depth.farDepth += slack;
     mesh->_slack = static_cast<float>(slack);
     return mesh;
+}
+
+double SurfaceMesh::layerEstimate() const
+{
+    constexpr int CELLS = 12;
+    const glm::dvec2 size = glm::max(_view.screen.max - _view.screen.min, glm::dvec2(1e-12));
+    const glm::dvec2 cells = double(CELLS) / size;
+    std::array<double, CELLS * CELLS> areas{};
+    const auto add = [&](const glm::dvec2& place, double area) {
+        const glm::dvec2 cell = (place - _view.screen.min) * cells;
+        const int x = std::clamp(static_cast<int>(cell.x), 0, CELLS - 1);
+        const int y = std::clamp(static_cast<int>(cell.y), 0, CELLS - 1);
+        areas[static_cast<std::size_t>(y * CELLS + x)] += area;
+    };
+    for (std::size_t i = 0; i + 2 < _indices.size(); i += 3) {
+        const glm::dvec2 a(_devices[_indices[i]]), b(_devices[_indices[i + 1]]),
+            c(_devices[_indices[i + 2]]);
+        const glm::dvec2 u = b - a, v = c - a;
+        // Four like triangles, each at its middle.
+        const double quarter = 0.125 * std::abs(u.x * v.y - u.y * v.x);
+        const glm::dvec2 middle = (a + b + c) / 3.0;
+        add(middle, quarter);
+        add(0.5 * (middle + a), quarter);
+        add(0.5 * (middle + b), quarter);
+        add(0.5 * (middle + c), quarter);
+    }
+    return *std::max_element(areas.begin(), areas.end()) * cells.x * cells.y;
 }
 
 bool SurfaceMesh::touches(const VolumeOutline& outline) const

@@ -38,6 +38,10 @@ public:
 
     std::size_t triangleCount() const { return _indices.size() / 3; }
 
+    /// How many of its triangles lie over each other on the screen, at most: an estimate from areas
+    /// in a coarse grid; good for closed surfaces of many triangles.
+    double layerEstimate() const;
+
     /// Whether any triangle reaches into an outline. What does not cannot show in the volume, nor
     /// the volume in it.
     bool touches(const VolumeOutline& outline) const;

@@ -42,6 +42,7 @@ struct VolumeInstance
     std::int64_t emptyBricks = 0, homogeneousBricks = 0, cellCount = 0, occupiedCells = 0;
     double cellSize = 8.0; ///< voxels
     core::SamplingParameters sampling;
+    std::uint64_t viewId = 0; ///< see viewIdOf()
 
     // Known once sorting begins:
     osgUtil::RenderLeaf* leaf = nullptr;

@@ -41,6 +41,8 @@ std::string header(const ProgramFeatures& features)
                                             "AVERAGE",   "SUM",     "ISOSURFACE"};
     define(true, functions[features.rayFunction]);
     define(features.paintCount > 0, "PAINTED");
+    if (features.slotCount > 0)
+        text += "#define SLOTS " + std::to_string(features.slotCount) + "\n";
     define(features.shading, "SHADING");
     define(features.gradientTexture, "GRADIENT_TEXTURE");
     define(features.shortRuns, "SHORT_RUNS");
@@ -78,11 +80,16 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->setName("osgVolumizer");
     set->setDataVariance(osg::Object::STATIC);
     set->setAttributeAndModes(program(features), StateAttribute::ON | StateAttribute::PROTECTED);
+    // What surfaces leave in the target's alpha need not be what they take of the light behind.
+    constexpr GLenum SOURCE1_COLOR = 0x88F9;
+    const bool captured = features.slotCount > 0;
     set->setAttributeAndModes(
-        new osg::BlendFunc(osg::BlendFunc::ONE, osg::BlendFunc::ONE_MINUS_SRC_ALPHA),
+        new osg::BlendFunc(osg::BlendFunc::ONE,
+                           captured ? SOURCE1_COLOR : GLenum(GL_ONE_MINUS_SRC_ALPHA)),
         StateAttribute::ON);
-    set->setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL, 0.0, 1.0, false),
-                              StateAttribute::ON);
+    set->setAttributeAndModes(
+        new osg::Depth(captured ? osg::Depth::ALWAYS : osg::Depth::LEQUAL, 0.0, 1.0, false),
+        StateAttribute::ON);
     // OSG's transparent bins drop fragments of alpha 0, which may still carry colour.
     set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f),
                               StateAttribute::OFF | StateAttribute::PROTECTED);
@@ -94,6 +101,8 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->addUniform(new osg::Uniform("lookupTable", int(UNIT_TABLE)));
     set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
     set->addUniform(new osg::Uniform("layerDepth", int(UNIT_LAYER_DEPTH)));
+    set->addUniform(new osg::Uniform("sortedSlots", int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform("slotColors", int(UNIT_SORTED_NEAR)));
     set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
     set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
     set->addUniform(new osg::Uniform("cells", int(UNIT_CELLS)));

@@ -33,8 +33,11 @@ struct ProgramFeatures
     bool gradientTexture = false; ///< brick textures hold gradients besides values
     bool skipping = false;        ///< leap over cells that show nothing
     bool countSamples = false;    ///< draw the number of samples: see setSampleCounting()
-    int paintCount = 0;           ///< bricks of volumes that paint this one; no more than 4
-    int planeCount = 0;           ///< half-spaces that end the segment, besides the clip box
+    /// Slots of captured surfaces that are composited while marching, over all pixels of an area;
+    /// multiple of 4. Expects opaqueDepth, one brick, and the whole depth of the volume.
+    int slotCount = 0;
+    int paintCount = 0; ///< bricks of volumes that paint this one; no more than 4
+    int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
 
     /// Whether the rays' values are gathered in a target of their own, and drawn as one layer.
     bool gathers() const
@@ -47,6 +50,7 @@ struct ProgramFeatures
     std::uint64_t key() const
     {
         std::uint64_t result = static_cast<std::uint64_t>(planeCount) << 3;
+        result = (result | static_cast<std::uint64_t>(slotCount / 4)) << 3;
         result = (result | static_cast<std::uint64_t>(paintCount)) << 3 |
                  static_cast<std::uint64_t>(rayFunction);
         for (bool flag :

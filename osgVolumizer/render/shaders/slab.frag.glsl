@@ -7,7 +7,12 @@
 #define OPAQUE_ENOUGH 3e-5
 
 flat in vec2 slab; // nearest and farthest depth, from the reference depth
+#ifdef SLOTS
+layout(location = 0, index = 0) out vec4 fragColor;
+layout(location = 0, index = 1) out vec4 fragThrough; // what is left of the light behind
+#else
 out vec4 fragColor;
+#endif
 
 uniform vec3 regionMin, regionMax; // of the whole volume
 uniform vec3 clipMin, clipMax;     // of the brick
@@ -28,6 +33,12 @@ uniform bool inFrontOfLayer;  // which part is drawn
 #ifdef RANKED
 uniform sampler2D sortedFar, sortedNear; // window depths of the pixel's surfaces, far to near; -1: no more
 uniform int rank;                        // of the surface that ends the segment at its near end
+#endif
+
+#ifdef SLOTS
+uniform sampler2DArray sortedSlots; // window depths of the pixel's surfaces, near to far, then their slots
+uniform sampler2DArray slotColors;
+uniform vec2 surfaceWeights; // 1: colour, alpha is yet to be weighted by alpha
 #endif
 
 #ifdef OPAQUE_DEPTH
@@ -327,6 +338,51 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 }
 #endif
 
+// Light of a segment. Colours jump where paint begins, so its parts end there.
+vec4 light(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+#ifdef PAINTED
+    vec4 sum = vec4(0.0);
+    for (float t = tNear; t < tFar && sum.a < 1.0 - OPAQUE_ENOUGH;) {
+        float next = nextCut(origin, direction, t, tFar);
+        sum += (1.0 - sum.a) * march(origin, direction, t, next, brick);
+        t = next;
+    }
+    return sum;
+#else
+    return march(origin, direction, tNear, tFar, brick);
+#endif
+}
+
+#ifdef SLOTS
+// The pixel's surfaces, near to far, and the volume between them.
+void compositeSurfaces(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float enter = max(tNear, brick.x), leave = min(tFar, brick.y);
+    fragColor = vec4(0.0);
+    float through = 1.0, t = enter;
+    vec4 depths;
+    for (int i = 0; i <= SLOTS && through > OPAQUE_ENOUGH; ++i) {
+        if (i < SLOTS && (i & 3) == 0) depths = texelFetch(sortedSlots, ivec3(pixel, i >> 2), 0);
+        float depth = i < SLOTS ? depths[i & 3] : 2.0;
+        float end = depth <= 1.0 ? min(rayAt(depth), leave) : leave;
+        if (t < end) {
+            vec4 c = light(origin, direction, t, end, brick);
+            fragColor += through * c;
+            through *= 1.0 - c.a;
+            t = end;
+        }
+        if (depth > 1.0) break;
+        int four = int(texelFetch(sortedSlots, ivec3(pixel, SLOTS / 4 + (i >> 4)), 0)[(i >> 2) & 3]);
+        vec4 c = texelFetch(slotColors, ivec3(pixel, (four >> (5 * (i & 3))) & 31), 0);
+        fragColor += through * c * mix(vec2(1.0), vec2(c.a), surfaceWeights).xxxy;
+        through *= 1.0 - c.a;
+    }
+    fragThrough = vec4(through);
+}
+#endif
+
 void main()
 {
     vec3 origin, direction;
@@ -356,24 +412,17 @@ void main()
     }
     if (nearer >= 0.0) tNear = max(tNear, rayAt(nearer));
 #endif
-    if (!(max(tNear, brick.x) < min(tFar, brick.y))) discard;
 #ifdef SHADING
     vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
     originEye = rayOriginEye * window;
     directionEye = rayDirectionEye * window;
     towardsEye = -normalize(directionEye);
 #endif
-
-#ifdef PAINTED
-    // Colours jump where paint begins, so segments end there.
-    fragColor = vec4(0.0);
-    for (float t = tNear; t < tFar && fragColor.a < 1.0 - OPAQUE_ENOUGH;) {
-        float next = nextCut(origin, direction, t, tFar);
-        fragColor += (1.0 - fragColor.a) * march(origin, direction, t, next, brick);
-        t = next;
-    }
+#ifdef SLOTS
+    compositeSurfaces(origin, direction, tNear, tFar, brick);
 #else
-    fragColor = march(origin, direction, tNear, tFar, brick);
+    if (!(max(tNear, brick.x) < min(tFar, brick.y))) discard;
+    fragColor = light(origin, direction, tNear, tFar, brick);
 #endif
 #ifdef COUNT_SAMPLES
     fragColor = vec4(sampleCount, 0.0, 0.0, 0.0);
