@@ -46,7 +46,7 @@ osg::ref_ptr<osg::Geometry> makeMirror(const osg::BoundingSphere& bound, double 
                                        osg::Texture2D* texture)
 {
     const osg::Vec3 center(bound.center().x(), bound.center().y(), height);
-    const float half = 1.4f * bound.radius();
+    const float half = 2.2f * bound.radius();
     osg::ref_ptr<osg::Geometry> square = osg::createTexturedQuadGeometry(
         center - osg::Vec3(half, half, 0.0f), osg::Vec3(2.0f * half, 0.0f, 0.0f),
         osg::Vec3(0.0f, 2.0f * half, 0.0f));
