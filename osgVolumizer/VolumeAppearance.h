@@ -81,6 +81,23 @@ public:
         /// ray enters with a value already beyond there is no surface.
         ISOSURFACE
     };
+    /// What happens where volumes overlap.
+    enum CombineRule
+    {
+        /// Extinctions add, and each emits its own colour: clouds in one another.
+        ABSORB,
+        /// The volume shows nothing by itself, and neither emits nor absorbs: it paints the others.
+        /// Where
+        /// its table gives colour p and opacity a (of a layer one unit thick), the colours that
+        /// overlapping
+        /// volumes emit, lit or not, are multiplied by 1 - a + a * p; their opacity stays. Several
+        /// paint one after another, in any order. So a dose is painted over anatomy. Neither
+        /// lit nor composited itself, its ray function does not matter; interpolation is nearest or
+        /// linear, lookup after interpolation. Needs voxels in a convex region, in one voxel
+        /// frame; at most four of its bricks may overlap a volume. Volumes with a ray function
+        /// that gathers values are not painted.
+        PAINT
+    };
     /// Where gradients for shading come from. Both are central differences over a sample's
     /// distance.
     enum Gradients
@@ -134,6 +151,8 @@ public:
     };
     Status setMaterial(const Material& material);
     const Material& getMaterial() const { return _material; }
+    void setCombineRule(CombineRule rule) { _combineRule = rule; }
+    CombineRule getCombineRule() const { return _combineRule; }
     void setGradients(Gradients gradients) { _gradients = gradients; }
     Gradients getGradients() const { return _gradients; }
 
@@ -197,6 +216,7 @@ private:
     bool _shading = false;
     Material _material;
     Gradients _gradients = ON_THE_FLY;
+    CombineRule _combineRule = ABSORB;
     int _accumulationBits = 32;
     core::SamplingParameters _sampling;
     double _errorTolerance = 0.0, _targetFrameTime = 0.0;

@@ -1,6 +1,8 @@
 #include "Accumulation.h"
 
+#include "ReportOnce.h"
 #include "ScissorScope.h"
+#include "ScreenPass.h"
 #include "SharedStateSets.h"
 #include "VolumeProgram.h"
 
@@ -37,9 +39,15 @@ osg::ref_ptr<osg::Texture2D> makeDepth(int width, int height, GLenum format)
                       format == GL_DEPTH_COMPONENT32F ? GL_FLOAT : GL_UNSIGNED_INT);
 }
 
-GLenum colorFormatOf(int bits)
+// The format of the target. Without float targets fixed point is the next best, which holds all
+// that a framebuffer shows.
+GLenum colorFormatOf(int bits, const ContextLimits& limits)
 {
-    return bits <= 8 ? GL_RGBA8 : bits <= 16 ? GL_RGBA16F_ARB : GL_RGBA32F_ARB;
+    if (bits <= 8) return GL_RGBA8;
+    if (limits.floatTargets) return bits <= 16 ? GL_RGBA16F_ARB : GL_RGBA32F_ARB;
+    reportOnce({ErrorCode::NOT_SUPPORTED, "the context has no float targets; volumes are "
+                                          "accumulated in fixed point, 16 bits a channel"});
+    return GL_RGBA16;
 }
 
 // Binds a texture for raw GL calls, and makes OSG bind its own again before the next leaf.
@@ -105,6 +113,17 @@ void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorF
     gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth, 0);
 }
 
+// Of the leaf that ends accumulation: writes depth.
+osg::ref_ptr<osg::StateSet> depthStateSet()
+{
+    return sharedStateSet(SharedState::DEPTH, []() {
+        osg::ref_ptr<osg::StateSet> set = screenState("depth.frag.glsl", true);
+        set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
+        set->addUniform(new osg::Uniform("targetDepth", int(UNIT_LAYER_DEPTH)));
+        return set;
+    });
+}
+
 // Clearing the layer buffer needs depth writes.
 osg::ref_ptr<osg::StateSet> accumulationStateSet()
 {
@@ -160,7 +179,89 @@ void makeLayerTextures(osg::State& state, AccumulationBuffers& buffers)
     attach(GL_DEPTH_STENCIL_ATTACHMENT, *layers.rankDepth);
 }
 
+osg::ref_ptr<osg::Texture2DArray> makeArray(int width, int height, int layers,
+                                            GLenum internalFormat, GLenum format, GLenum type)
+{
+    osg::ref_ptr<osg::Texture2DArray> texture = new osg::Texture2DArray;
+    texture->setTextureSize(width, height, layers);
+    texture->setInternalFormat(static_cast<GLint>(internalFormat));
+    texture->setSourceFormat(format);
+    texture->setSourceType(type);
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
+    texture->setResizeNonPowerOfTwoHint(false);
+    texture->setDataVariance(osg::Object::STATIC);
+    return texture;
+}
+
+GLuint arrayName(osg::State& state, osg::Texture2DArray& texture)
+{
+    state.setActiveTextureUnit(UNIT_OPAQUE_DEPTH);
+    texture.apply(state);
+    state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
+    return texture.getTextureObject(state.getContextID())->id();
+}
+
+void makeCaptureTextures(osg::State& state, const AccumulationBuffers& accumulation,
+                         CaptureBuffers& buffers, int slotCount)
+{
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    if (!buffers.queries[0]) {
+        gl.glGenQueries(CaptureBuffers::MAXIMUM_SLOTS, buffers.queries);
+        gl.glGenFramebuffers(CaptureBuffers::MAXIMUM_SLOTS, buffers.framebuffers);
+        gl.glGenFramebuffers(1, &buffers.sortedFramebuffer);
+        gl.glGenFramebuffers(1, &buffers.restFramebuffer);
+    }
+    const int w = accumulation.width, h = accumulation.height;
+    buffers.width = w;
+    buffers.height = h;
+    buffers.slotCount = slotCount;
+    buffers.colorFormat = accumulation.colorFormat;
+    buffers.colors = makeArray(w, h, slotCount, accumulation.colorFormat, GL_RGBA, GL_FLOAT);
+    buffers.depths = makeArray(w, h, slotCount, GL_DEPTH24_STENCIL8_EXT, GL_DEPTH_STENCIL_EXT,
+                               GL_UNSIGNED_INT_24_8_EXT);
+    buffers.sorted = makeArray(w, h, sortedLayers(slotCount), GL_RGBA32F_ARB, GL_RGBA, GL_FLOAT);
+    const GLuint colors = arrayName(state, *buffers.colors);
+    const GLuint depths = arrayName(state, *buffers.depths);
+    const GLuint sorted = arrayName(state, *buffers.sorted);
+    for (int slot = 0; slot < slotCount; ++slot) {
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.framebuffers[slot]);
+        gl.glFramebufferTextureLayer(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, colors, 0, slot);
+        gl.glFramebufferTextureLayer(GL_FRAMEBUFFER_EXT, GL_DEPTH_STENCIL_ATTACHMENT, depths, 0,
+                                     slot);
+    }
+    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.sortedFramebuffer);
+    std::vector<GLenum> targets;
+    for (int layer = 0; layer < sortedLayers(slotCount); ++layer) {
+        targets.push_back(GL_COLOR_ATTACHMENT0_EXT + static_cast<GLenum>(layer));
+        gl.glFramebufferTextureLayer(GL_FRAMEBUFFER_EXT, targets.back(), sorted, 0, layer);
+    }
+    gl.glDrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
+    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.restFramebuffer);
+    gl.glFramebufferTextureLayer(GL_FRAMEBUFFER_EXT, GL_DEPTH_STENCIL_ATTACHMENT, depths, 0, 0);
+    buffers.restColor = nullptr;
+}
+
 } // namespace
+
+CaptureBuffers& Accumulation::captureBuffers(osg::State& state, int slotCount)
+{
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    const AccumulationBuffers& accumulation = resources->accumulation;
+    CaptureBuffers& buffers = resources->capture;
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    if (buffers.slotCount < slotCount || buffers.width != accumulation.width ||
+        buffers.height != accumulation.height || buffers.colorFormat != accumulation.colorFormat)
+        makeCaptureTextures(state, accumulation, buffers, slotCount);
+    if (buffers.restColor != accumulation.color) {
+        const GLuint color = textureName(state, *accumulation.color);
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.restFramebuffer);
+        gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D,
+                                  color, 0);
+        buffers.restColor = accumulation.color;
+    }
+    return buffers;
+}
 
 LayerBuffers& Accumulation::layerBuffers(osg::State& state)
 {
@@ -202,7 +303,7 @@ void Accumulation::begin(osg::RenderInfo& renderInfo)
     bindForCopy(state, *buffers.opaqueDepth);
     glCopyTexSubImage2D(GL_TEXTURE_2D, 0, s.x, s.y, s.x, s.y, s.width, s.height);
     if (needsTarget(*resources)) {
-        ensureTarget(state, buffers, colorFormatOf(s.bits));
+        ensureTarget(state, buffers, colorFormatOf(s.bits, resources->limits));
         copyColor(state, buffers);
         _redirected = true;
     }
@@ -226,7 +327,7 @@ void Accumulation::end(osg::RenderInfo& renderInfo)
 {
     osg::State& state = *renderInfo.getState();
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    if (_redirected) writeBack(state, contextResources(state)->accumulation);
+    if (_redirected) writeBack(state, *contextResources(state));
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_readFramebuffer));
     state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
@@ -262,14 +363,21 @@ void Accumulation::endLayer(osg::RenderInfo& renderInfo)
     state.get<osg::GLExtensions>()->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, target);
 }
 
-void Accumulation::writeBack(osg::State& state, AccumulationBuffers& buffers)
+void Accumulation::writeBack(osg::State& state, ContextResources& resources)
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const AccumulationBuffers& buffers = resources.accumulation;
     const AccumulationSettings& s = _settings;
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, buffers.framebuffer);
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
     gl.glBlitFramebuffer(s.x, s.y, s.x + s.width, s.y + s.height, s.x, s.y, s.x + s.width,
                          s.y + s.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    if (!_depthKept) return;
+    // Not a blit, which would need the framebuffer's very format.
+    state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth);
+    state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.depth);
+    drawScreen(state, resources, {s.x, s.y, s.width, s.height});
+    state.haveAppliedTextureAttribute(UNIT_LAYER_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
 AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step, const glm::ivec4& area)
@@ -305,7 +413,9 @@ osgUtil::RenderLeaf* accumulationLeaf(Accumulation& accumulation, AccumulationLe
 {
     osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
         new AccumulationLeaf(&accumulation, step, area), beside._projection, beside._modelview);
-    beside._parent->find_or_insert(accumulationStateSet())->addLeaf(leaf);
+    const bool writesDepth = step == AccumulationLeaf::END && accumulation.isDepthKept();
+    const osg::ref_ptr<osg::StateSet> set = writesDepth ? depthStateSet() : accumulationStateSet();
+    beside._parent->find_or_insert(set)->addLeaf(leaf);
     return leaf.get();
 }
 

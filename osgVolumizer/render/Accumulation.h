@@ -40,16 +40,21 @@ public:
 
     /// Before the frame is drawn: there has to be a target, whatever the framebuffer has.
     void requireTarget() { _targetRequired = true; }
+    /// Before the frame is drawn: what surfaces leave in the target's depth is for the framebuffer.
+    void keepDepth() { _depthKept = true; }
+    bool isDepthKept() const { return _depthKept; }
     /// The buffers of sorted layers, made when first asked for, with the target's colour.
     LayerBuffers& layerBuffers(osg::State& state);
+    /// The buffers of captured surfaces, with at least so many slots.
+    CaptureBuffers& captureBuffers(osg::State& state, int slotCount);
 
 private:
     bool needsTarget(const ContextResources& resources) const;
     void copyColor(osg::State& state, AccumulationBuffers& buffers);
-    void writeBack(osg::State& state, AccumulationBuffers& buffers);
+    void writeBack(osg::State& state, ContextResources& resources);
 
     AccumulationSettings _settings;
-    bool _redirected = false, _targetRequired = false;
+    bool _redirected = false, _targetRequired = false, _depthKept = false;
     GLint _drawFramebuffer = 0, _readFramebuffer = 0, _sampleBuffers = 0;
 };
 

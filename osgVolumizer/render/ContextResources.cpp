@@ -2,6 +2,8 @@
 
 #include "SharedStateSets.h"
 
+#include <osg/ContextData>
+
 #include <map>
 #include <mutex>
 
@@ -22,32 +24,74 @@ std::map<unsigned, std::shared_ptr<ContextResources>>& registry()
     return resources;
 }
 
-void release(ContextResources& resources, osg::State& state)
+std::shared_ptr<ContextResources> take(unsigned contextId)
 {
-    const unsigned contextId = state.getContextID();
-    for (const auto& program : resources.rays.programs)
-        program.second->releaseGLObjects(&state);
-    // Without the extensions there never was a context to make anything in.
-    osg::GLExtensions* gl = osg::GLExtensions::Get(contextId, false);
-    if (gl) {
-        resources.vertices.release(*gl);
-        resources.indices.release(*gl);
-        AccumulationBuffers& buffers = resources.accumulation;
-        LayerBuffers& layers = buffers.layers;
-        for (GLuint* name :
-             {&buffers.framebuffer, &buffers.layerFramebuffer, &layers.sortedFramebuffer,
-              &layers.rankFramebuffer, &resources.rays.framebuffer})
-            if (*name) gl->glDeleteFramebuffers(1, name);
-        if (layers.queries[0]) {
-            gl->glDeleteFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
-            gl->glDeleteQueries(LayerBuffers::COUNT, layers.queries);
-        }
+    std::lock_guard<std::mutex> lock(registryMutex());
+    const auto entry = registry().find(contextId);
+    if (entry == registry().end()) return nullptr;
+    const std::shared_ptr<ContextResources> resources = entry->second;
+    registry().erase(entry);
+    return resources;
+}
+
+// Textures and programs are OSG's, and go with their last reference.
+void deleteNames(ContextResources& resources, osg::GLExtensions& gl)
+{
+    resources.vertices.release(gl);
+    resources.indices.release(gl);
+    AccumulationBuffers& buffers = resources.accumulation;
+    LayerBuffers& layers = buffers.layers;
+    for (GLuint* name : {&buffers.framebuffer, &buffers.layerFramebuffer, &layers.sortedFramebuffer,
+                         &layers.rankFramebuffer, &resources.rays.framebuffer})
+        if (*name) gl.glDeleteFramebuffers(1, name);
+    CaptureBuffers& capture = resources.capture;
+    if (capture.queries[0]) {
+        gl.glDeleteFramebuffers(CaptureBuffers::MAXIMUM_SLOTS, capture.framebuffers);
+        gl.glDeleteFramebuffers(1, &capture.sortedFramebuffer);
+        gl.glDeleteFramebuffers(1, &capture.restFramebuffer);
+        gl.glDeleteQueries(CaptureBuffers::MAXIMUM_SLOTS, capture.queries);
+    }
+    if (layers.queries[0]) {
+        gl.glDeleteFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
+        gl.glDeleteQueries(LayerBuffers::COUNT, layers.queries);
     }
 }
 
+void releaseContext(osg::State& state, bool current)
+{
+    releaseSharedStateSets(&state);
+    const std::shared_ptr<ContextResources> resources = take(state.getContextID());
+    // Without the extensions there never was a context to make anything in.
+    osg::GLExtensions* gl = osg::GLExtensions::Get(state.getContextID(), false);
+    if (resources && gl && current) deleteNames(*resources, *gl);
+}
+
+// OSG keeps one for each context number that has resources, and tells it when they go.
+class ContextWatch : public osg::GraphicsObjectManager
+{
+public:
+    explicit ContextWatch(unsigned contextId)
+        : osg::GraphicsObjectManager("osgVolumizer::render::ContextResources", contextId)
+    {
+    }
+    void flushDeletedGLObjects(double, double&) override {}
+    void flushAllDeletedGLObjects() override {}
+    void deleteAllGLObjects() override { releaseAll(true); }
+    void discardAllGLObjects() override { releaseAll(false); }
+
+private:
+    void releaseAll(bool current)
+    {
+        // Only its number is asked for.
+        const osg::ref_ptr<osg::State> state = new osg::State;
+        state->setContextID(getContextID());
+        releaseContext(*state, current);
+    }
+};
+
 } // namespace
 
-ContextResources::ContextResources()
+ContextResources::ContextResources(osg::State& state) : limits(queryContextLimits(state))
 {
     osg::setGLExtensionFuncPtr(glGetFramebufferAttachmentParameteriv,
                                "glGetFramebufferAttachmentParameteriv",
@@ -71,23 +115,29 @@ std::shared_ptr<ContextResources> contextResources(osg::State& state)
 {
     std::lock_guard<std::mutex> lock(registryMutex());
     std::shared_ptr<ContextResources>& entry = registry()[state.getContextID()];
-    if (!entry) entry = std::make_shared<ContextResources>();
+    if (!entry) {
+        entry = std::make_shared<ContextResources>(state);
+        osg::get<ContextWatch>(state.getContextID());
+    }
     return entry;
+}
+
+std::size_t contextResourcesCount()
+{
+    std::lock_guard<std::mutex> lock(registryMutex());
+    return registry().size();
 }
 
 void releaseContextResources(osg::State* state)
 {
-    releaseSharedStateSets(state);
-    std::lock_guard<std::mutex> lock(registryMutex());
-    if (!state) {
-        // No context is current: the names go with their contexts.
-        registry().clear();
+    if (state) {
+        releaseContext(*state, true);
         return;
     }
-    const auto entry = registry().find(state->getContextID());
-    if (entry == registry().end()) return;
-    release(*entry->second, *state);
-    registry().erase(entry);
+    // No context is current: the names go with their contexts.
+    releaseSharedStateSets(nullptr);
+    std::lock_guard<std::mutex> lock(registryMutex());
+    registry().clear();
 }
 
 } // namespace render

@@ -1,9 +1,12 @@
 #pragma once
 
+#include "ContextLimits.h"
+
 #include <osg/GLExtensions>
 #include <osg/Program>
 #include <osg/State>
 #include <osg/Texture2D>
+#include <osg/Texture2DArray>
 
 #include <map>
 #include <memory>
@@ -35,6 +38,24 @@ struct LayerBuffers
     const osg::Texture2D* rankColor = nullptr; ///< that the rank framebuffer has for colour
 };
 
+/// Buffers of captured surfaces: see CaptureLeaf.
+struct CaptureBuffers
+{
+    static constexpr int MAXIMUM_SLOTS = 24;
+
+    int width = 0, height = 0, slotCount = 0;
+    GLenum colorFormat = 0;
+    GLuint framebuffers[MAXIMUM_SLOTS] = {}, sortedFramebuffer = 0, restFramebuffer = 0;
+    GLuint queries[MAXIMUM_SLOTS] = {};
+    osg::ref_ptr<osg::Texture2DArray> colors, depths, sorted;
+    const osg::Texture2D* restColor = nullptr; ///< that the rest framebuffer has for colour
+};
+/// Layers of `sorted`: four depths each, then sixteen slots each.
+constexpr int sortedLayers(int slotCount)
+{
+    return slotCount / 4 + (slotCount + 15) / 16;
+}
+
 /// The colour and depth that volumes are accumulated in, a copy of the opaque scene's depth, and
 /// the depth of the surfaces that split segments. One a context, grown to the largest viewport
 /// seen.
@@ -59,17 +80,22 @@ struct RayBuffers
 /// What the renderer keeps per context, made when first needed.
 struct ContextResources
 {
-    ContextResources();
+    explicit ContextResources(osg::State& state);
 
+    ContextLimits limits;
     using GetAttachmentParameter = void(GL_APIENTRY*)(GLenum, GLenum, GLenum, GLint*);
     GetAttachmentParameter glGetFramebufferAttachmentParameteriv = nullptr; ///< not one of OSG's
     StreamBuffer vertices, indices;
     AccumulationBuffers accumulation;
+    CaptureBuffers capture;
     RayBuffers rays;
 };
 
-/// The resources of the current context; call only while it is current.
+/// The resources of the current context; call only while it is current. They are released with the
+/// context, when OSG deletes or discards its objects.
 std::shared_ptr<ContextResources> contextResources(osg::State& state);
+/// Of how many contexts there are resources.
+std::size_t contextResourcesCount();
 /// Follows osg::Object::releaseGLObjects: one context's resources, or all for null.
 void releaseContextResources(osg::State* state);
 

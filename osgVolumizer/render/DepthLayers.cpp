@@ -1,51 +1,27 @@
 #include "DepthLayers.h"
 
 #include "ScissorScope.h"
+#include "ScreenPass.h"
 #include "SharedStateSets.h"
 #include "VolumeProgram.h"
 
 #include <osg/ColorMask>
 #include <osg/Depth>
-#include <osg/Program>
 #include <osg/Stencil>
 
-#include <array>
 #include <string>
 
 namespace osgVolumizer {
 namespace render {
 
-std::string shaderSource(const std::string& name); // generated from shaders/*.glsl
-
 namespace {
 
 using osg::StateAttribute;
-constexpr unsigned FORCE =
-    StateAttribute::ON | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
 constexpr GLenum WAIT_FOR_QUERY = 0x8E13; // GL_QUERY_WAIT
 
-osg::ref_ptr<osg::Program> screenProgram(const char* fragment)
+osg::ref_ptr<osg::StateSet> layerScreenState(const char* fragment, bool writeDepth)
 {
-    osg::ref_ptr<osg::Program> program = new osg::Program;
-    program->setName(std::string("osgVolumizer ") + fragment);
-    const std::string version = "#version 330\n";
-    program->addShader(
-        new osg::Shader(osg::Shader::VERTEX, version + shaderSource("screen.vert.glsl")));
-    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, version + shaderSource(fragment)));
-    return program;
-}
-
-// Writes either colour or depth.
-osg::ref_ptr<osg::StateSet> screenState(const char* fragment, bool writeDepth)
-{
-    osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-    set->setAttributeAndModes(screenProgram(fragment), FORCE);
-    set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, writeDepth), FORCE);
-    const unsigned off = StateAttribute::OFF | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
-    for (GLenum mode : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_ALPHA_TEST})
-        set->setMode(mode, off);
-    const bool color = !writeDepth;
-    set->setAttribute(new osg::ColorMask(color, color, color, color), FORCE);
+    osg::ref_ptr<osg::StateSet> set = screenState(fragment, writeDepth);
     for (int k = 0; k < LayerLeaf::LAYER_COUNT; ++k)
         set->addUniform(
             new osg::Uniform(("layer" + std::to_string(k)).c_str(), int(UNIT_FIRST_LAYER) + k));
@@ -53,31 +29,6 @@ osg::ref_ptr<osg::StateSet> screenState(const char* fragment, bool writeDepth)
     set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
     set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
     return set;
-}
-
-// One triangle over the whole viewport.
-void drawScreen(osg::State& state, ContextResources& resources, const glm::ivec4& area)
-{
-    static const std::array<float, 6> corners = {-1.0f, -1.0f, 3.0f, -1.0f, -1.0f, 3.0f};
-    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const ScissorScope scissor;
-    if (!scissor.set(area)) return;
-    state.lazyDisablingOfVertexAttributes();
-    state.applyDisablingOfVertexAttributes();
-    resources.vertices.stream(gl, GL_ARRAY_BUFFER_ARB, corners.data(), sizeof(corners));
-    gl.glEnableVertexAttribArray(0);
-    gl.glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    gl.glDisableVertexAttribArray(0);
-    gl.glBindBuffer(GL_ARRAY_BUFFER_ARB, 0);
-    state.unbindVertexBufferObject();
-}
-
-void setUniform(osg::State& state, const char* name, int value)
-{
-    if (const auto* program = state.getLastAppliedProgramObject())
-        state.get<osg::GLExtensions>()->glUniform1i(
-            program->getUniformLocation(osg::Uniform::getNameID(name)), value);
 }
 
 void bindFramebuffer(osg::State& state, GLuint name)
@@ -105,14 +56,14 @@ osg::ref_ptr<osg::StateSet> LayerLeaf::stateSet(Step step)
 {
     if (step == SORT)
         return sharedStateSet(SharedState::SORT,
-                              []() { return screenState("sort.frag.glsl", false); });
+                              []() { return layerScreenState("sort.frag.glsl", false); });
     if (step == BEGIN_RANK || step == BEGIN_REST)
         return sharedStateSet(SharedState::FILL,
-                              []() { return screenState("fill.frag.glsl", true); });
+                              []() { return layerScreenState("fill.frag.glsl", true); });
     return sharedStateSet(SharedState::CLEAR, []() {
         osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-        set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE);
-        set->setAttribute(new osg::Stencil, FORCE); // its write mask is all ones
+        set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE_ON);
+        set->setAttribute(new osg::Stencil, FORCE_ON); // its write mask is all ones
         return set;
     });
 }
@@ -173,25 +124,31 @@ void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
         gl.glEndConditionalRender();
         bindFramebuffer(state, resources->accumulation.framebuffer);
         break;
+    case DEPTH:
+        break;
     }
     for (unsigned unit = UNIT_OPAQUE_DEPTH; unit < UNIT_FIRST_LAYER + LAYER_COUNT; ++unit)
         state.haveAppliedTextureAttribute(unit, StateAttribute::TEXTURE);
 }
 
-osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index)
+namespace {
+
+osg::ref_ptr<osg::StateSet> makeSurfaceState(LayerLeaf::Step step, int index)
 {
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+    if (step == LayerLeaf::BEGIN_CAPTURE || step == LayerLeaf::DEPTH)
+        set->setAttribute(new osg::ColorMask(false, false, false, false), FORCE_ON);
+    if (step == LayerLeaf::DEPTH) return set;
     const auto stencil = [&set](osg::Stencil::Function function, int reference) {
         osg::ref_ptr<osg::Stencil> s = new osg::Stencil;
         s->setFunction(function, reference, 0xff);
         s->setOperation(osg::Stencil::INCR, osg::Stencil::INCR, osg::Stencil::INCR);
-        set->setAttributeAndModes(s, FORCE);
+        set->setAttributeAndModes(s, FORCE_ON);
     };
     osg::Depth::Function function = osg::Depth::EQUAL;
     if (step == LayerLeaf::BEGIN_CAPTURE) {
         function = osg::Depth::ALWAYS;
         stencil(osg::Stencil::EQUAL, index);
-        set->setAttribute(new osg::ColorMask(false, false, false, false), FORCE);
     } else if (step == LayerLeaf::BEGIN_REST) {
         function = osg::Depth::LESS;
         stencil(osg::Stencil::LEQUAL,
@@ -199,8 +156,19 @@ osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index)
     }
     // True depths, whatever range the leaf asks for: the volume is compared with them.
     set->setAttributeAndModes(new osg::Depth(function, 0.0, 1.0, step == LayerLeaf::BEGIN_CAPTURE),
-                              FORCE);
+                              FORCE_ON);
     return set;
+}
+
+} // namespace
+
+osg::ref_ptr<osg::StateSet> layerSurfaceState(LayerLeaf::Step step, int index)
+{
+    // All ranks are drawn alike.
+    const int distinct = step == LayerLeaf::BEGIN_CAPTURE ? index : LayerLeaf::LAYER_COUNT + step;
+    const auto key =
+        static_cast<std::uint64_t>(SharedState::LAYER_SURFACES) + std::uint64_t(distinct);
+    return sharedStateSet(key, [step, index]() { return makeSurfaceState(step, index); });
 }
 
 } // namespace render

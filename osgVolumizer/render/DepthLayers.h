@@ -38,7 +38,8 @@ public:
         BEGIN_RANK, ///< surfaces of rank `index`
         END_RANK,
         BEGIN_REST, ///< fragments beyond the last layer
-        END_REST
+        END_REST,
+        DEPTH ///< surfaces that write depth, for what is drawn after the bin
     };
 
     LayerLeaf(Accumulation* accumulation, Step step, int index, const glm::ivec4& area);

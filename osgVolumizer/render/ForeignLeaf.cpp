@@ -1,5 +1,6 @@
 #include "ForeignLeaf.h"
 
+#include <osg/BlendFunc>
 #include <osg/ColorMask>
 #include <osg/Drawable>
 #include <osgUtil/StateGraph>
@@ -26,22 +27,54 @@ bool sameRays(const osg::Matrixd& a, const osg::Matrixd& b)
     return true;
 }
 
-// The Depth attribute that OSG would apply for a graph: the last one on the way down that no
-// override stops.
-const osg::Depth* effectiveDepth(const osgUtil::StateGraph* graph)
+// State sets from the root down.
+std::vector<const osg::StateSet*> pathOf(const osgUtil::StateGraph* graph)
 {
     std::vector<const osg::StateSet*> path;
     for (; graph; graph = graph->_parent)
         if (graph->getStateSet()) path.push_back(graph->getStateSet());
-    const osg::Depth* depth = nullptr;
+    std::reverse(path.begin(), path.end());
+    return path;
+}
+
+// The attribute that OSG would apply for a graph: the last one on the way down that no override
+// stops.
+template <class Attribute>
+const Attribute* effective(const osgUtil::StateGraph* graph, StateAttribute::Type type)
+{
+    const Attribute* attribute = nullptr;
     bool overridden = false;
-    for (auto set = path.rbegin(); set != path.rend(); ++set) {
-        const auto* pair = (*set)->getAttributePair(StateAttribute::DEPTH);
+    for (const osg::StateSet* set : pathOf(graph)) {
+        const auto* pair = set->getAttributePair(type);
         if (!pair || (overridden && !(pair->second & StateAttribute::PROTECTED))) continue;
-        depth = static_cast<const osg::Depth*>(pair->first.get());
+        attribute = static_cast<const Attribute*>(pair->first.get());
         overridden = (pair->second & StateAttribute::OVERRIDE) != 0;
     }
-    return depth;
+    return attribute;
+}
+
+// Likewise for a mode.
+bool isOn(const osgUtil::StateGraph* graph, GLenum mode, bool byDefault)
+{
+    bool on = byDefault, overridden = false;
+    for (const osg::StateSet* set : pathOf(graph)) {
+        const StateAttribute::GLModeValue value = set->getMode(mode);
+        if (value & StateAttribute::INHERIT) continue;
+        if (overridden && !(value & StateAttribute::PROTECTED)) continue;
+        on = (value & StateAttribute::ON) != 0;
+        overridden = (value & StateAttribute::OVERRIDE) != 0;
+    }
+    return on;
+}
+
+const osg::Depth* effectiveDepth(const osgUtil::StateGraph* graph)
+{
+    return effective<osg::Depth>(graph, StateAttribute::DEPTH);
+}
+
+bool isDepthTested(const osgUtil::StateGraph* graph)
+{
+    return isOn(graph, GL_DEPTH_TEST, true); // which OSG has on
 }
 
 // Normalised device z of the plane at a depth.
@@ -52,6 +85,47 @@ double deviceZ(const osg::Matrixd& p, double depth)
 }
 
 } // namespace
+
+bool writesDepth(const osgUtil::StateGraph* graph)
+{
+    const osg::Depth* depth = effectiveDepth(graph);
+    return isDepthTested(graph) && (!depth || depth->getWriteMask());
+}
+
+Blending blendingOf(const osgUtil::StateGraph* graph)
+{
+    using osg::BlendFunc;
+    const auto* function = effective<BlendFunc>(graph, StateAttribute::BLENDFUNC);
+    const auto* mask = effective<osg::ColorMask>(graph, StateAttribute::COLORMASK);
+    if (mask && !(mask->getRedMask() && mask->getGreenMask() && mask->getBlueMask() &&
+                  mask->getAlphaMask()))
+        return {};
+    if (!function || !isOn(graph, GL_BLEND, false) || isOn(graph, GL_COLOR_LOGIC_OP, false) ||
+        isOn(graph, GL_STENCIL_TEST, false) ||
+        effective<StateAttribute>(graph, StateAttribute::BLENDEQUATION))
+        return {};
+    const auto isWeight = [](GLenum f) { return f == BlendFunc::SRC_ALPHA || f == BlendFunc::ONE; };
+    Blending blending;
+    blending.over = function->getDestination() == BlendFunc::ONE_MINUS_SRC_ALPHA &&
+                    function->getDestinationAlpha() == BlendFunc::ONE_MINUS_SRC_ALPHA &&
+                    isWeight(function->getSource()) && isWeight(function->getSourceAlpha());
+    blending.colorWeighted = function->getSource() == BlendFunc::SRC_ALPHA;
+    blending.alphaWeighted = function->getSourceAlpha() == BlendFunc::SRC_ALPHA;
+    return blending;
+}
+
+bool hasUsualDepthTest(const osgUtil::StateGraph* graph)
+{
+    const osg::Depth* depth = effectiveDepth(graph);
+    return isDepthTested(graph) && (!depth || depth->getFunction() == osg::Depth::LESS ||
+                                    depth->getFunction() == osg::Depth::LEQUAL);
+}
+
+bool hasUsualDepthRange(const osgUtil::StateGraph* graph)
+{
+    const osg::Depth* depth = effectiveDepth(graph);
+    return !depth || (depth->getZNear() == 0.0 && depth->getZFar() == 1.0);
+}
 
 BoxInView boxInView(const osg::BoundingBoxd& box, const osg::Matrixd& modelView,
                     const osg::Matrixd& projection)

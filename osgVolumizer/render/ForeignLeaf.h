@@ -35,6 +35,28 @@ struct BoxInView
 BoxInView boxInView(const osg::BoundingBoxd& box, const osg::Matrixd& modelView,
                     const osg::Matrixd& projection);
 
+/// Whether what is drawn in a graph may change the depth buffer.
+bool writesDepth(const osgUtil::StateGraph* graph);
+
+/// How fragments of a graph are blended.
+struct Blending
+{
+    bool over =
+        false; ///< all channels: source, perhaps weighted, plus (1 - alpha) of what is behind
+    bool colorWeighted = false, alphaWeighted = false; ///< by the source's alpha
+
+    bool operator==(const Blending& o) const
+    {
+        return over == o.over && colorWeighted == o.colorWeighted &&
+               alphaWeighted == o.alphaWeighted;
+    }
+};
+Blending blendingOf(const osgUtil::StateGraph* graph);
+/// Whether the depth test is the usual one: on, nearer passes.
+bool hasUsualDepthTest(const osgUtil::StateGraph* graph);
+/// Whether depths go to the whole depth range, [0, 1].
+bool hasUsualDepthRange(const osgUtil::StateGraph* graph);
+
 /// A leaf that is not ours, in the same bin: never touched, but replaced by copies where it reaches
 /// into a volume.
 class ForeignLeaf

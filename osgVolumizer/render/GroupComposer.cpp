@@ -44,7 +44,7 @@ bool GroupComposer::prepare(VolumeInstance& instance, PreparedVolume& volume)
     volume.view = {toGlm(*instance.leaf->_modelview), toGlm(*instance.leaf->_projection)};
     if (instance.look->features.slab) return true;
     const bool mergeable = _group.volumes.size() > 1 || !_group.surfaces.empty();
-    volume.sliced.reset(new SlicedVolume);
+    volume.sliced = std::make_unique<SlicedVolume>();
     const Status status = volume.sliced->polygonize(instance, volume.view, mergeable);
     if (volume.sliced->polygonized()) ++_counts.polygonizations;
     if (!status) reportError(status);
@@ -64,6 +64,21 @@ void GroupComposer::prepareVolumes()
     }
 }
 
+VolumeOutline GroupComposer::outlineOf(const VolumeInstance& volume) const
+{
+    VolumeOutline outline;
+    outline.depth = volume.depth;
+    // Faces of slabs are a little larger than their box.
+    outline.margin = {4.0 / std::max(_viewport[2], 1), 4.0 / std::max(_viewport[3], 1)};
+    const glm::dmat4 toClip = toGlm(*volume.leaf->_projection) * toGlm(*volume.leaf->_modelview);
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec4 clip = toClip * glm::dvec4(volume.prepared->regionBox.corner(i), 1.0);
+        outline.everywhere = outline.everywhere || !(clip.w > 0.0);
+        outline.corners[i] = glm::dvec2(clip) / clip.w;
+    }
+    return outline;
+}
+
 // Surfaces that, looked at closely, reach into no volume stay the leaves they are.
 void GroupComposer::prepareSurfaces(std::vector<OrderedLeaf>& leaves)
 {
@@ -73,8 +88,9 @@ void GroupComposer::prepareSurfaces(std::vector<OrderedLeaf>& leaves)
         surface.mesh = SurfaceMesh::of(*leaf);
         surface.view = surface.mesh ? surface.mesh->view() : leaf->view();
         const bool reaches =
-            std::any_of(_volumes.begin(), _volumes.end(), [&surface](const PreparedVolume& v) {
-                return v.instance->depth.overlaps(surface.view.depth);
+            std::any_of(_volumes.begin(), _volumes.end(), [&](const PreparedVolume& v) {
+                return surface.mesh ? surface.mesh->touches(outlineOf(*v.instance))
+                                    : v.instance->depth.overlaps(surface.view.depth);
             });
         if (reaches)
             _surfaces.push_back(std::move(surface));
@@ -146,6 +162,7 @@ void GroupComposer::splitSurfaces(const Region& region,
                                   const std::vector<core::ScheduledInterval>& intervals)
 {
     std::vector<core::DepthInterval> depths;
+    depths.reserve(intervals.size());
     for (const core::ScheduledInterval& interval : intervals)
         depths.push_back(interval.depth);
     for (std::size_t i = 0; i < region.surfaces.size(); ++i) {
@@ -181,6 +198,152 @@ bool GroupComposer::leavesDepth(const Surface& surface)
     const osg::Drawable* drawable = surface.leaf->leaf().getDrawable();
     return (drawable->asGeometry() || dynamic_cast<const osgText::TextBase*>(drawable)) &&
            !drawable->getDrawCallback();
+}
+
+namespace {
+
+// Colour and depth of a fragment together, with the graph's state: not text, which writes depth in
+// a pass of its own, nor what others may do.
+bool drawsAtOnce(const osg::Drawable& drawable)
+{
+    const std::string library = drawable.libraryName();
+    return drawable.asGeometry() && !drawable.getDrawCallback() &&
+           (library == "osg" || library == "osgAnimation");
+}
+
+} // namespace
+
+bool GroupComposer::canBeCaptured(const Region& region) const
+{
+    if (region.surfaces.empty() || _volumes.size() != 1) return false;
+    const PreparedVolume& volume = _volumes.front();
+    if (volume.sliced || volume.instance->bricks.size() != 1) return false;
+    const Blending blending = blendingOf(_surfaces[region.surfaces.front()].leaf->leaf()._parent);
+    if (!blending.over) return false;
+    return std::all_of(region.surfaces.begin(), region.surfaces.end(), [&](std::size_t s) {
+        const osgUtil::StateGraph* graph = _surfaces[s].leaf->leaf()._parent;
+        return drawsAtOnce(*_surfaces[s].leaf->leaf().getDrawable()) && hasUsualDepthTest(graph) &&
+               blendingOf(graph) == blending;
+    });
+}
+
+// Large meshes by themselves, with as many slots as they seem to have layers, and one more where
+// there is room; all others together, with as many as they could need. Empty where the slots do not
+// suffice.
+std::vector<GroupComposer::CaptureSet> GroupComposer::findCaptureSets(const Region& region) const
+{
+    constexpr std::size_t LARGE_MESH = 2000;
+    constexpr int COMMON_SLOTS = 8, UNKNOWN_LAYERS = 4;
+    // An estimate may be a little above a whole number of layers.
+    constexpr double ESTIMATE_TOLERANCE = 0.9;
+    const int affordable =
+        affordableSlots(_viewport[0] + _viewport[2], _viewport[1] + _viewport[3]);
+    CaptureSet common;
+    std::vector<CaptureSet> sets;
+    int total = 0, commonLayers = 0;
+    for (std::size_t s : region.surfaces) {
+        const SurfaceMesh* mesh = _surfaces[s].mesh.get();
+        const double layers = mesh ? mesh->layerEstimate() * ESTIMATE_TOLERANCE : UNKNOWN_LAYERS;
+        const int slots = static_cast<int>(std::ceil(std::clamp(layers, 1.0, 1000.0)));
+        if (mesh && mesh->triangleCount() >= LARGE_MESH) {
+            sets.push_back({{s}, 0, slots});
+            total += slots;
+        } else {
+            common.surfaces.push_back(s);
+            const std::size_t most = mesh ? mesh->triangleCount() : UNKNOWN_LAYERS;
+            commonLayers += static_cast<int>(std::min(most, std::size_t(slots) + 1));
+        }
+    }
+    common.slotCount = std::min(commonLayers, COMMON_SLOTS);
+    int spare = affordable - total - common.slotCount, next = 0;
+    if (spare < 0) return {};
+    if (spare >= static_cast<int>(sets.size())) {
+        for (CaptureSet& set : sets)
+            ++set.slotCount;
+        spare -= static_cast<int>(sets.size());
+    }
+    common.slotCount = std::min(commonLayers, common.slotCount + spare);
+    if (common.slotCount > 0) sets.insert(sets.begin(), common);
+    for (CaptureSet& set : sets) {
+        set.firstSlot = next;
+        next += set.slotCount;
+    }
+    // Whole fours are sorted, so all of them have to be drawn, or at least cleared.
+    sets.back().slotCount += (next + 3) / 4 * 4 - next;
+    return sets;
+}
+
+void GroupComposer::composeCaptured(const Region& region, const std::vector<CaptureSet>& sets,
+                                    std::vector<OrderedLeaf>& leaves)
+{
+    using Step = CaptureLeaf::Step;
+    PreparedVolume& volume = _volumes.front();
+    const VolumeInstance& instance = *volume.instance;
+    const double depth = instance.look->referenceDepth;
+    CaptureLeaf::Settings settings;
+    settings.area = areaOf(region);
+    settings.slotCount = sets.back().firstSlot + sets.back().slotCount;
+    _accumulation.requireTarget();
+    for (const CaptureSet& set : sets) {
+        for (int k = 0; k < set.slotCount; ++k) {
+            settings.slot = set.firstSlot + k;
+            // Waiting for what the last pass drew costs; passes that are likely needed do not.
+            settings.conditional = k > 1;
+            settings.step = Step::BEGIN_SLOT;
+            addCaptureStep(settings, depth, leaves);
+            addCopies(set.surfaces, *captureState(k), depth, leaves);
+            settings.step = Step::END_SLOT;
+            addCaptureStep(settings, depth, leaves);
+        }
+    }
+    settings.step = Step::SORT;
+    addCaptureStep(settings, depth, leaves);
+
+    auto look = std::make_shared<VolumeLook>(*volume.looks[WHOLE]);
+    look->features.slotCount = settings.slotCount;
+    const Blending blending = blendingOf(_surfaces[region.surfaces.front()].leaf->leaf()._parent);
+    look->surfaceWeights = {blending.colorWeighted ? 1.0f : 0.0f,
+                            blending.alphaWeighted ? 1.0f : 0.0f};
+    addVolume(volume, screenMesh(instance), look, depth, leaves);
+
+    for (const CaptureSet& set : sets) {
+        settings.slot = set.firstSlot + set.slotCount - 1;
+        settings.step = Step::BEGIN_REST;
+        addCaptureStep(settings, depth, leaves);
+        addCopies(set.surfaces, *captureRestState(set.slotCount), depth, leaves);
+        settings.step = Step::END_REST;
+        addCaptureStep(settings, depth, leaves);
+    }
+    const bool oneDepth =
+        std::all_of(region.surfaces.begin(), region.surfaces.end(), [this](std::size_t s) {
+            const osgUtil::StateGraph* graph = _surfaces[s].leaf->leaf()._parent;
+            return writesDepth(graph) && hasUsualDepthRange(graph);
+        });
+    settings.step = Step::WRITE_DEPTH;
+    if (oneDepth)
+        addCaptureStep(settings, depth, leaves);
+    else
+        addSurfaces(LayerLeaf::DEPTH, 0, region, depth, leaves);
+}
+
+void GroupComposer::addCaptureStep(const CaptureLeaf::Settings& settings, double depth,
+                                   std::vector<OrderedLeaf>& leaves)
+{
+    const osgUtil::RenderLeaf& beside = *_volumes.front().instance->leaf;
+    osg::ref_ptr<osgUtil::RenderLeaf> leaf =
+        new osgUtil::RenderLeaf(new CaptureLeaf(&_accumulation, settings), beside._projection,
+                                beside._modelview, static_cast<float>(depth));
+    beside._parent->_parent->find_or_insert(CaptureLeaf::stateSet(settings))->addLeaf(leaf);
+    leaves.push_back({depth, leaf.get()});
+}
+
+void GroupComposer::addCopies(const std::vector<std::size_t>& surfaces, osg::StateSet& state,
+                              double depth, std::vector<OrderedLeaf>& leaves)
+{
+    for (std::size_t s : surfaces) {
+        leaves.push_back({depth, _surfaces[s].leaf->copy(state)});
+        ++_counts.surfacePieces;
+    }
 }
 
 // Sorting draws every surface twice per layer; worth it until triangles cost more than intervals
@@ -231,6 +394,7 @@ void GroupComposer::composeSorted(const Region& region, std::vector<OrderedLeaf>
         addSurfaces(begin, rank, region, depth, leaves);
         addLayerStep(rest ? Step::END_REST : Step::END_RANK, query, region, depth, leaves);
     }
+    addSurfaces(Step::DEPTH, 0, region, depth, leaves);
 }
 
 // Intervals without surfaces: slabs, alternating who goes first.
@@ -273,6 +437,7 @@ void GroupComposer::addSurfaces(LayerLeaf::Step step, int index, const Region& r
 {
     for (std::size_t s : region.surfaces) {
         const ForeignLeaf& surface = *_surfaces[s].leaf;
+        if (step == LayerLeaf::DEPTH && !writesDepth(surface.leaf()._parent)) continue;
         leaves.push_back({depth, surface.copy(*layerSurfaceState(step, index))});
         ++_counts.surfacePieces;
     }
@@ -282,6 +447,13 @@ void GroupComposer::composeRegion(const Region& region, std::vector<OrderedLeaf>
 {
     for (PreparedVolume& volume : _volumes)
         makeLooks(volume, region);
+    if (canBeCaptured(region)) {
+        const std::vector<CaptureSet> sets = findCaptureSets(region);
+        if (!sets.empty()) {
+            composeCaptured(region, sets, leaves);
+            return;
+        }
+    }
     if (isWorthSorting(region)) {
         composeSorted(region, leaves);
         return;
@@ -369,8 +541,8 @@ void GroupComposer::addVolume(PreparedVolume& volume, std::shared_ptr<const Volu
     osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
         drawable, instance.leaf->_projection, instance.leaf->_modelview, static_cast<float>(depth));
     osgUtil::StateGraph* graph = instance.leaf->_parent;
-    if (look->features.key() != instance.look->features.key())
-        graph = graph->_parent->find_or_insert(volumeStateSet(look->features));
+    const osg::ref_ptr<osg::StateSet> set = volumeStateSet(look->features);
+    if (graph->getStateSet() != set) graph = graph->_parent->find_or_insert(set);
     graph->addLeaf(leaf);
     leaves.push_back({depth, leaf.get()});
 }

@@ -4,6 +4,7 @@
 #include "DepthLayers.h"
 #include "ForeignLeaf.h"
 #include "MeshBuilder.h"
+#include "SurfaceCapture.h"
 #include "SurfaceMesh.h"
 
 #include <osgUtil/RenderLeaf>
@@ -38,8 +39,10 @@ struct MergeGroup
 
 /// Makes the leaves of one group, far to near.
 ///
-/// A volume by itself is one leaf. Where a few surfaces are in volumes, their fragments are sorted:
-/// see LayerLeaf; that is exact. Where there are many triangles, depth is cut into intervals. An
+/// A volume by itself is one leaf. Where surfaces with usual blending are in one volume of one
+/// brick, their fragments are captured and composited while the volume is marched: see CaptureLeaf;
+/// exact, and the fastest. Where a few others are in volumes, their fragments are sorted: see
+/// LayerLeaf; that is exact too. Where there are many triangles, depth is cut into intervals. An
 /// interval of a volume and surfaces is drawn as: the surfaces' nearest depth into a layer buffer,
 /// the volume behind that depth, the surfaces, the volume in front of it; this is exact where a
 /// pixel has one surface in the interval, and off by the interval's thickness where it has more.
@@ -93,10 +96,25 @@ private:
 
     bool prepare(VolumeInstance& instance, PreparedVolume& volume);
     void prepareVolumes();
+    VolumeOutline outlineOf(const VolumeInstance& volume) const;
     void prepareSurfaces(std::vector<OrderedLeaf>& leaves);
     std::vector<Region> findRegions() const;
     static bool leavesDepth(const Surface& surface);
     bool isWorthSorting(const Region& region) const;
+    /// Surfaces whose fragments are captured together, in slots of their own.
+    struct CaptureSet
+    {
+        std::vector<std::size_t> surfaces;
+        int firstSlot = 0, slotCount = 0;
+    };
+    bool canBeCaptured(const Region& region) const;
+    std::vector<CaptureSet> findCaptureSets(const Region& region) const;
+    void composeCaptured(const Region& region, const std::vector<CaptureSet>& sets,
+                         std::vector<OrderedLeaf>& leaves);
+    void addCaptureStep(const CaptureLeaf::Settings& settings, double depth,
+                        std::vector<OrderedLeaf>& leaves);
+    void addCopies(const std::vector<std::size_t>& surfaces, osg::StateSet& state, double depth,
+                   std::vector<OrderedLeaf>& leaves);
     void composeSorted(const Region& region, std::vector<OrderedLeaf>& leaves);
     void composeVolumes(const std::vector<core::ScheduledInterval>& intervals,
                         std::vector<OrderedLeaf>& leaves);

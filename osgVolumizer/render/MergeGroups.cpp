@@ -30,6 +30,8 @@ private:
     std::vector<std::size_t> _parent;
 };
 
+} // namespace
+
 bool overlaps(const BoxInView& a, const BoxInView& b)
 {
     return a.depth.overlaps(b.depth) && a.screen.overlaps(b.screen);
@@ -43,8 +45,6 @@ BoxInView viewOf(const VolumeInstance& volume)
     view.depth = volume.depth;
     return view;
 }
-
-} // namespace
 
 MergeGroups findMergeGroups(const std::vector<VolumeInstance*>& volumes,
                             const std::vector<osgUtil::RenderLeaf*>& leaves)

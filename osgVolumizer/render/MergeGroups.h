@@ -14,6 +14,11 @@ struct MergeGroups
     std::vector<MergeGroup> groups;
 };
 
+/// Where a volume is in its view.
+BoxInView viewOf(const VolumeInstance& volume);
+/// In depth and on the screen.
+bool overlaps(const BoxInView& a, const BoxInView& b);
+
 /// Finds who overlaps whom, by depth and by screen rectangle.
 /// \param leaves all leaves of the bin; those of the volumes are skipped
 MergeGroups findMergeGroups(const std::vector<VolumeInstance*>& volumes,

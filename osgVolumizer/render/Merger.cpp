@@ -2,6 +2,7 @@
 
 #include "Matrices.h"
 #include "MergeGroups.h"
+#include "Paint.h"
 #include "Statistics.h"
 
 #include "../core/ordering/BrickOrder.h"
@@ -70,14 +71,16 @@ void sortBricks(VolumeInstance& volume, const core::View& view)
         volume.bricks.push_back(std::move(byIndex.at(index)));
 }
 
+bool isNearer(const OrderedLeaf& a, const OrderedLeaf& b)
+{
+    return a.depth < b.depth;
+}
+
 // The first and the last of our leaves, around all others.
 void addAccumulation(Accumulation& accumulation, const osgUtil::RenderLeaf& beside,
                      const glm::ivec4& viewport, std::vector<OrderedLeaf>& made)
 {
-    const auto byDepth = [](const OrderedLeaf& a, const OrderedLeaf& b) {
-        return a.depth < b.depth;
-    };
-    const auto ends = std::minmax_element(made.begin(), made.end(), byDepth);
+    const auto ends = std::minmax_element(made.begin(), made.end(), isNearer);
     const double nearest = ends.first->depth, farthest = ends.second->depth;
     made.insert(made.begin(), {farthest, accumulationLeaf(accumulation, AccumulationLeaf::BEGIN,
                                                           beside, viewport)});
@@ -96,10 +99,43 @@ void light(const std::vector<VolumeInstance*>& volumes, osgUtil::RenderBin& bin)
     }
 }
 
+bool sortsByDepth(const osgUtil::RenderBin* bin)
+{
+    return bin && bin->getSortMode() == osgUtil::RenderBin::SORT_BACK_TO_FRONT &&
+           !const_cast<osgUtil::RenderBin*>(bin)->getDrawCallback() &&
+           !dynamic_cast<const osgUtil::RenderStage*>(bin);
+}
+
+// A bin and those nested in it that are one with it.
+void collectBins(osgUtil::RenderBin& bin, std::vector<osgUtil::RenderBin*>& bins)
+{
+    bins.push_back(&bin);
+    for (const auto& nested : bin.getRenderBinList())
+        if (sortsByDepth(nested.second)) collectBins(*nested.second, bins);
+}
+
+// Whether leaves that are not ours may leave something in the depth buffer while ours are drawn.
+bool isDepthWritten(const std::vector<osgUtil::RenderLeaf*>& leaves,
+                    const std::unordered_set<const osgUtil::RenderLeaf*>& replaced,
+                    const std::vector<OrderedLeaf>& made)
+{
+    const auto ends = std::minmax_element(made.begin(), made.end(), isNearer);
+    return std::any_of(leaves.begin(), leaves.end(), [&](const osgUtil::RenderLeaf* leaf) {
+        if (dynamic_cast<const VolumeDrawable*>(leaf->getDrawable())) return false;
+        const bool between =
+            leaf->_depth >= ends.first->depth && leaf->_depth <= ends.second->depth;
+        return (between || replaced.count(leaf)) && writesDepth(leaf->_parent);
+    });
+}
+
 } // namespace
 
-Merger* Merger::of(osgUtil::RenderBin& bin, osgUtil::CullVisitor& visitor)
+Merger* Merger::of(osgUtil::RenderBin& innermost, osgUtil::CullVisitor& visitor)
 {
+    osgUtil::RenderBin* outermost = &innermost;
+    while (sortsByDepth(outermost) && sortsByDepth(outermost->getParent()))
+        outermost = outermost->getParent();
+    osgUtil::RenderBin& bin = *outermost;
     if (auto* merger = dynamic_cast<Merger*>(bin.getSortCallback())) return merger;
     osg::ref_ptr<Merger> merger = new Merger;
     merger->_chained = bin.getSortCallback();
@@ -116,12 +152,31 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
         _chained->sortImplementation(bin);
     else
         bin->sortImplementation();
-    if (bin->getRenderLeafList().empty()) bin->sortBackToFront();
-    LeafList& leaves = bin->getRenderLeafList();
-    const std::vector<VolumeInstance*> visible = visibleVolumes(leaves);
+    std::vector<osgUtil::RenderBin*> bins;
+    collectBins(*bin, bins);
+    for (osgUtil::RenderBin* nested : bins)
+        if (nested->getRenderLeafList().empty()) nested->sortBackToFront();
+    const std::vector<VolumeInstance*> visible = visibleVolumes(bins);
     light(visible, *bin);
-    // Gathered rays are one layer, which nothing can be merged into.
+    FrameCounts counts;
+    if (!visible.empty()) {
+        LeafList& leaves = bin->getRenderLeafList();
+        for (std::size_t i = 1; i < bins.size(); ++i) {
+            LeafList& nested = bins[i]->getRenderLeafList();
+            leaves.insert(leaves.end(), nested.begin(), nested.end());
+            nested.clear();
+        }
+        merge(leaves, visible, counts);
+    }
+    report(counts);
+}
+
+void Merger::merge(LeafList& leaves, const std::vector<VolumeInstance*>& visible,
+                   FrameCounts& counts)
+{
     std::vector<VolumeInstance*> merged = visible;
+    applyPaint(merged);
+    // Gathered rays are one layer, which nothing can be merged into.
     const auto gathering =
         std::stable_partition(merged.begin(), merged.end(), [](const VolumeInstance* volume) {
             return !volume->look->features.gathers();
@@ -133,13 +188,12 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
         groups.groups.push_back({{volume}, {}});
 
     std::unordered_set<const osgUtil::RenderLeaf*> replaced;
-    for (const auto& volume : _volumes)
+    for (const VolumeInstance* volume : visible)
         replaced.insert(volume->leaf);
     for (const MergeGroup& group : groups.groups)
         for (const ForeignLeaf* surface : group.surfaces)
             replaced.insert(&surface->leaf());
 
-    FrameCounts counts;
     const glm::ivec4 viewport(_viewport->x(), _viewport->y(), _viewport->width(),
                               _viewport->height());
     const osg::ref_ptr<Accumulation> accumulation = makeAccumulation();
@@ -148,7 +202,10 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
         GroupComposer(group, viewport, *accumulation, counts).compose(made);
     for (const VolumeInstance* volume : visible)
         counts.bricksDrawn += static_cast<double>(volume->bricks.size());
-    if (!made.empty()) addAccumulation(*accumulation, *visible.front()->leaf, viewport, made);
+    if (!made.empty()) {
+        if (isDepthWritten(leaves, replaced, made)) accumulation->keepDepth();
+        addAccumulation(*accumulation, *visible.front()->leaf, viewport, made);
+    }
 
     std::vector<OrderedLeaf> all;
     for (osgUtil::RenderLeaf* leaf : leaves)
@@ -159,23 +216,30 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
     leaves.clear();
     for (const OrderedLeaf& leaf : all)
         leaves.push_back(leaf.leaf);
-    report(counts);
 }
 
-std::vector<VolumeInstance*> Merger::visibleVolumes(const LeafList& leaves) const
+// Also takes the leaves of volumes that are not to be seen out of their bins.
+std::vector<VolumeInstance*>
+Merger::visibleVolumes(const std::vector<osgUtil::RenderBin*>& bins) const
 {
-    std::unordered_map<const osg::Drawable*, osgUtil::RenderLeaf*> byDrawable;
-    for (osgUtil::RenderLeaf* leaf : leaves)
-        byDrawable.emplace(leaf->getDrawable(), leaf);
+    std::unordered_map<const osg::Drawable*, VolumeInstance*> byDrawable;
+    for (const auto& volume : _volumes)
+        byDrawable.emplace(volume->drawable.get(), volume.get());
     std::vector<VolumeInstance*> result;
-    for (const auto& volume : _volumes) {
-        const auto found = byDrawable.find(volume->drawable.get());
-        if (found == byDrawable.end()) continue;
-        volume->leaf = found->second;
-        const core::View view{toGlm(*volume->leaf->_modelview), toGlm(*volume->leaf->_projection)};
-        if (!findDepthRange(*volume, view)) continue;
-        sortBricks(*volume, view);
-        result.push_back(volume.get());
+    const auto isHidden = [&](osgUtil::RenderLeaf* leaf) {
+        const auto found = byDrawable.find(leaf->getDrawable());
+        if (found == byDrawable.end()) return false;
+        VolumeInstance& volume = *found->second;
+        const core::View view{toGlm(*leaf->_modelview), toGlm(*leaf->_projection)};
+        if (!findDepthRange(volume, view)) return true;
+        volume.leaf = leaf;
+        sortBricks(volume, view);
+        result.push_back(&volume);
+        return false;
+    };
+    for (osgUtil::RenderBin* bin : bins) {
+        LeafList& leaves = bin->getRenderLeafList();
+        leaves.erase(std::remove_if(leaves.begin(), leaves.end(), isHidden), leaves.end());
     }
     return result;
 }

@@ -19,11 +19,16 @@ namespace render {
 
 /// Collects the volumes of one transparent bin in one view, and, once every leaf and the final near
 /// and far are known, replaces their leaves by drawn ones in depth order with everything else in
-/// the bin. One per bin and cull; a sort callback that was there before still runs first.
+/// the bin. A sort callback that was there before still runs first; one that is installed later in
+/// the same cull has to call the one that it finds.
+///
+/// Bins that are sorted by depth and nested directly in each other are one: the outermost has the
+/// merger, and it draws the leaves of all as soon as one shows a volume. Other bins state an order
+/// of their own, which stays.
 class Merger : public osgUtil::RenderBin::SortCallback
 {
 public:
-    /// The merger of a bin, installed on the first call.
+    /// The merger of a bin, and of those it is nested in, installed on the first call.
     static Merger* of(osgUtil::RenderBin& bin, osgUtil::CullVisitor& visitor);
 
     void add(std::unique_ptr<VolumeInstance> volume) { _volumes.push_back(std::move(volume)); }
@@ -32,7 +37,8 @@ public:
 private:
     using LeafList = osgUtil::RenderBin::RenderLeafList;
 
-    std::vector<VolumeInstance*> visibleVolumes(const LeafList& leaves) const;
+    std::vector<VolumeInstance*> visibleVolumes(const std::vector<osgUtil::RenderBin*>& bins) const;
+    void merge(LeafList& leaves, const std::vector<VolumeInstance*>& visible, FrameCounts& counts);
     osg::ref_ptr<Accumulation> makeAccumulation() const;
     void report(const FrameCounts& counts) const;
 

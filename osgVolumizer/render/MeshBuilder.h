@@ -45,5 +45,9 @@ private:
     bool _spherical = false, _polygonized = false;
 };
 
+/// The whole of a volume of one brick as one triangle over the viewport, in device coordinates, for
+/// a shader that finds the ray's part of the volume itself. See ProgramFeatures::slotCount.
+std::shared_ptr<const VolumeMesh> screenMesh(const VolumeInstance& volume);
+
 } // namespace render
 } // namespace osgVolumizer

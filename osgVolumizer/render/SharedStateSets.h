@@ -14,7 +14,15 @@ enum class SharedState : std::uint64_t
     SORT = std::uint64_t(1) << 63,
     FILL,
     CLEAR,
-    ACCUMULATION
+    ACCUMULATION,
+    DEPTH,
+    NEAREST_SLOT,
+    FILL_REST,
+    CLEAR_SLOT,
+    LAYER_SURFACES = SORT + 1000, ///< these and the following
+    SORT_SLOTS = SORT + 2000,
+    CAPTURED_SURFACES = SORT + 3000,
+    REST_SURFACES = SORT + 4000
 };
 
 /// State sets that all volumes, views and contexts share, made when first asked for. Thread safe.

@@ -31,6 +31,18 @@ core::Plane flipped(const core::Plane& p)
 // Tag of the faces that clipping makes; nobody asks which plane made them.
 constexpr int CUT = 6;
 
+BrickBatch batchOf(const SelectedBrick& brick)
+{
+    BrickBatch batch;
+    batch.texture = brick.texture.texture;
+    batch.textureBytes = brick.texture.bytes;
+    batch.clipMin = glm::vec3(brick.box.min);
+    batch.clipMax = glm::vec3(brick.box.max);
+    batch.textureScale = brick.textureScale;
+    batch.textureOffset = brick.textureOffset;
+    return batch;
+}
+
 class SlabMeshBuilder
 {
 public:
@@ -82,13 +94,7 @@ private:
             _polytope.clip(flipped(depthPlane(_view.toEye, interval.farDepth)), CUT);
         if (_polytope.empty()) return;
 
-        BrickBatch batch;
-        batch.texture = brick.texture.texture;
-        batch.textureBytes = brick.texture.bytes;
-        batch.clipMin = glm::vec3(brick.box.min);
-        batch.clipMax = glm::vec3(brick.box.max);
-        batch.textureScale = brick.textureScale;
-        batch.textureOffset = brick.textureOffset;
+        BrickBatch batch = batchOf(brick);
         batch.firstIndex = static_cast<unsigned>(_mesh->indices.size());
         appendFaces(interval);
         batch.indexCount = static_cast<unsigned>(_mesh->indices.size()) - batch.firstIndex;
@@ -142,6 +148,24 @@ std::shared_ptr<const VolumeMesh> slabMesh(const VolumeInstance& volume, const c
     for (const core::DepthInterval& interval : farToNear)
         builder.append(interval);
     return builder.take();
+}
+
+std::shared_ptr<const VolumeMesh> screenMesh(const VolumeInstance& volume)
+{
+    auto mesh = std::make_shared<VolumeMesh>();
+    mesh->stride = SLAB_STRIDE;
+    mesh->slabOffset = 3;
+    const double reference = volume.look->referenceDepth;
+    const float nearest = static_cast<float>(volume.depth.nearDepth - reference),
+                farthest = static_cast<float>(volume.depth.farDepth - reference);
+    for (const glm::vec2 corner :
+         {glm::vec2(-1.0f), glm::vec2(3.0f, -1.0f), glm::vec2(-1.0f, 3.0f)})
+        mesh->vertices.insert(mesh->vertices.end(), {corner.x, corner.y, 0.0f, nearest, farthest});
+    mesh->indices = {0, 1, 2};
+    mesh->batches.push_back(batchOf(volume.bricks.front()));
+    mesh->batches.back().indexCount = 3;
+    mesh->faceCount = 1;
+    return mesh;
 }
 
 } // namespace render

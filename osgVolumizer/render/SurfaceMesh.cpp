@@ -7,8 +7,10 @@
 #include <osgUtil/StateGraph>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <typeinfo>
@@ -121,70 +123,149 @@ std::unique_ptr<SurfaceMesh> SurfaceMesh::of(const ForeignLeaf& foreign)
     const auto& geometry = static_cast<const osg::Geometry&>(*drawable);
     if (!canBeDrawnByIndex(geometry) || hasVertexShader(leaf._parent)) return nullptr;
 
-    const auto& vertices = static_cast<const osg::Vec3Array&>(*geometry.getVertexArray());
-    std::vector<unsigned> indices;
-    osg::TriangleIndexFunctor<CollectTriangles> collect;
-    collect.indices = &indices;
-    geometry.accept(collect);
-
     std::unique_ptr<SurfaceMesh> mesh(new SurfaceMesh);
     mesh->_geometry = &geometry;
+    osg::TriangleIndexFunctor<CollectTriangles> collect;
+    collect.indices = &mesh->_indices;
+    geometry.accept(collect);
+    const auto& vertices = static_cast<const osg::Vec3Array&>(*geometry.getVertexArray());
+    for (unsigned index : mesh->_indices)
+        if (index >= vertices.size()) return nullptr;
+
     const double infinity = std::numeric_limits<double>::infinity();
     BoxInView& view = mesh->_view;
     view.screen = {glm::dvec2(infinity), glm::dvec2(-infinity)};
     view.depth = {infinity, -infinity};
     const osg::Matrixd toClip = *leaf._modelview * *leaf._projection;
     const osg::Matrixd& toEye = *leaf._modelview;
-    std::vector<float> depths(vertices.size());
-    bool behind = false;
+    mesh->_depths.resize(vertices.size());
+    mesh->_devices.resize(vertices.size());
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const osg::Vec3d p(vertices[i]);
         const double depth =
             -(p.x() * toEye(0, 2) + p.y() * toEye(1, 2) + p.z() * toEye(2, 2) + toEye(3, 2));
         const osg::Vec4d clip = osg::Vec4d(p, 1.0) * toClip;
-        depths[i] = static_cast<float>(depth);
-        behind = behind || !(clip.w() > 0.0);
+        mesh->_depths[i] = static_cast<float>(depth);
+        mesh->_behindEye = mesh->_behindEye || !(clip.w() > 0.0);
         const glm::dvec2 device(clip.x() / clip.w(), clip.y() / clip.w());
+        mesh->_devices[i] = glm::vec2(device);
         view.screen.min = glm::min(view.screen.min, device);
         view.screen.max = glm::max(view.screen.max, device);
         view.depth.nearDepth = std::min(view.depth.nearDepth, depth);
         view.depth.farDepth = std::max(view.depth.farDepth, depth);
     }
-    if (behind) view.screen = foreign.view().screen;
+    if (mesh->_behindEye) view.screen = foreign.view().screen;
     if (!std::isfinite(view.depth.nearDepth) || !std::isfinite(view.depth.farDepth)) return nullptr;
     // GL computes depths in float: what is flat and parallel to the view still has a range.
     const double slack =
         2e-6 * std::max(std::abs(view.depth.nearDepth), std::abs(view.depth.farDepth));
     view.depth.nearDepth -= slack;
     view.depth.farDepth += slack;
-
-    mesh->_triangles.reserve(indices.size() / 3);
-    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-        if (std::max({indices[i], indices[i + 1], indices[i + 2]}) >= vertices.size())
-            return nullptr;
-        const float a = depths[indices[i]], b = depths[indices[i + 1]], c = depths[indices[i + 2]];
-        const float s = static_cast<float>(slack);
-        mesh->_triangles.push_back({{indices[i], indices[i + 1], indices[i + 2]},
-                                    std::min({a, b, c}) - s,
-                                    std::max({a, b, c}) + s,
-                                    (a + b + c) / 3.0f});
-    }
-    std::stable_sort(mesh->_triangles.begin(), mesh->_triangles.end(),
-                     [](const Triangle& a, const Triangle& b) { return a.middle > b.middle; });
+    mesh->_slack = static_cast<float>(slack);
     return mesh;
+}
+
+double SurfaceMesh::layerEstimate() const
+{
+    constexpr int CELLS = 12;
+    const glm::dvec2 size = glm::max(_view.screen.max - _view.screen.min, glm::dvec2(1e-12));
+    const glm::dvec2 cells = double(CELLS) / size;
+    std::array<double, CELLS * CELLS> areas{};
+    const auto add = [&](const glm::dvec2& place, double area) {
+        const glm::dvec2 cell = (place - _view.screen.min) * cells;
+        const int x = std::clamp(static_cast<int>(cell.x), 0, CELLS - 1);
+        const int y = std::clamp(static_cast<int>(cell.y), 0, CELLS - 1);
+        areas[static_cast<std::size_t>(y * CELLS + x)] += area;
+    };
+    for (std::size_t i = 0; i + 2 < _indices.size(); i += 3) {
+        const glm::dvec2 a(_devices[_indices[i]]), b(_devices[_indices[i + 1]]),
+            c(_devices[_indices[i + 2]]);
+        const glm::dvec2 u = b - a, v = c - a;
+        // Four like triangles, each at its middle.
+        const double quarter = 0.125 * std::abs(u.x * v.y - u.y * v.x);
+        const glm::dvec2 middle = (a + b + c) / 3.0;
+        add(middle, quarter);
+        add(0.5 * (middle + a), quarter);
+        add(0.5 * (middle + b), quarter);
+        add(0.5 * (middle + c), quarter);
+    }
+    return *std::max_element(areas.begin(), areas.end()) * cells.x * cells.y;
+}
+
+bool SurfaceMesh::touches(const VolumeOutline& outline) const
+{
+    if (outline.everywhere || _behindEye) return outline.depth.overlaps(_view.depth);
+    for (std::size_t i = 0; i + 2 < _indices.size(); i += 3)
+        if (touches(outline, &_indices[i])) return true;
+    return false;
+}
+
+// Separating axes: those of the screen, the triangle's edges, and the edges of the box, among which
+// are those of its hull.
+bool SurfaceMesh::touches(const VolumeOutline& outline, const unsigned* triangle) const
+{
+    float nearest = std::numeric_limits<float>::max(), farthest = -nearest;
+    glm::dvec2 corners[3];
+    for (int i = 0; i < 3; ++i) {
+        nearest = std::min(nearest, _depths[triangle[i]]);
+        farthest = std::max(farthest, _depths[triangle[i]]);
+        corners[i] = _devices[triangle[i]];
+    }
+    if (!outline.depth.overlaps({nearest - _slack, farthest + _slack})) return false;
+    const auto separates = [&](const glm::dvec2& axis) {
+        double low[2], high[2];
+        const auto project = [&axis](const glm::dvec2* points, int count, double& min,
+                                     double& max) {
+            min = max = glm::dot(points[0], axis);
+            for (int i = 1; i < count; ++i) {
+                const double at = glm::dot(points[i], axis);
+                min = std::min(min, at);
+                max = std::max(max, at);
+            }
+        };
+        project(corners, 3, low[0], high[0]);
+        project(outline.corners, 8, low[1], high[1]);
+        const double margin = glm::dot(outline.margin, glm::abs(axis));
+        return high[0] < low[1] - margin || low[0] > high[1] + margin;
+    };
+    const auto normal = [](const glm::dvec2& edge) { return glm::dvec2(-edge.y, edge.x); };
+    if (separates({1.0, 0.0}) || separates({0.0, 1.0})) return false;
+    for (int i = 0; i < 3; ++i)
+        if (separates(normal(corners[(i + 1) % 3] - corners[i]))) return false;
+    for (int i = 0; i < 8; ++i)
+        for (int axis = 1; axis < 8; axis <<= 1)
+            if (!(i & axis) && separates(normal(outline.corners[i | axis] - outline.corners[i])))
+                return false;
+    return true;
 }
 
 std::vector<SurfaceMesh::Indices>
 SurfaceMesh::split(const std::vector<core::DepthInterval>& farToNear) const
 {
+    struct Triangle
+    {
+        std::size_t first;
+        float nearDepth, farDepth, middle;
+    };
+    std::vector<Triangle> triangles;
+    triangles.reserve(triangleCount());
+    for (std::size_t i = 0; i + 2 < _indices.size(); i += 3) {
+        const float a = _depths[_indices[i]], b = _depths[_indices[i + 1]],
+                    c = _depths[_indices[i + 2]];
+        triangles.push_back(
+            {i, std::min({a, b, c}) - _slack, std::max({a, b, c}) + _slack, (a + b + c) / 3.0f});
+    }
+    std::stable_sort(triangles.begin(), triangles.end(),
+                     [](const Triangle& a, const Triangle& b) { return a.middle > b.middle; });
     std::vector<std::vector<unsigned>> lists(farToNear.size());
-    for (const Triangle& t : _triangles) {
+    for (const Triangle& t : triangles) {
         const auto first = std::partition_point(
             farToNear.begin(), farToNear.end(),
             [&t](const core::DepthInterval& d) { return d.nearDepth > t.farDepth; });
         for (auto i = first; i != farToNear.end() && i->farDepth >= t.nearDepth; ++i) {
             std::vector<unsigned>& list = lists[static_cast<std::size_t>(i - farToNear.begin())];
-            list.insert(list.end(), t.vertex, t.vertex + 3);
+            const unsigned* corners = &_indices[t.first];
+            list.insert(list.end(), corners, corners + 3);
         }
     }
     std::vector<Indices> result;

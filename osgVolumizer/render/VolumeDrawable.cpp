@@ -2,10 +2,12 @@
 
 #include "../Error.h"
 #include "BrickTextures.h"
+#include "CoarseTexture.h"
 #include "ContextResources.h"
 #include "Matrices.h"
 #include "PixelRays.h"
 #include "RayTarget.h"
+#include "ReportOnce.h"
 #include "ScissorScope.h"
 #include "Statistics.h"
 #include "Uniforms.h"
@@ -104,8 +106,10 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
 }
 
 void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRays& rays,
-                      const ProgramFeatures& features, const AccumulationBuffers& buffers)
+                      const VolumeLook& look, const ContextResources& resources)
 {
+    const ProgramFeatures& features = look.features;
+    const AccumulationBuffers& buffers = resources.accumulation;
     if (!buffers.opaqueDepth) return;
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
     if (features.layerDepth)
@@ -113,6 +117,11 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
     if (features.ranked) {
         state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.layers.sorted[0].get());
         state.applyTextureAttribute(UNIT_SORTED_NEAR, buffers.layers.sorted[1].get());
+    }
+    if (features.slotCount > 0) {
+        state.applyTextureAttribute(UNIT_SORTED_FAR, resources.capture.sorted.get());
+        state.applyTextureAttribute(UNIT_SORTED_NEAR, resources.capture.colors.get());
+        uniforms.set("surfaceWeights", look.surfaceWeights);
     }
     uniforms.set("depthTextureScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
                                                 1.0f / static_cast<float>(buffers.height)));
@@ -180,16 +189,18 @@ void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms, const Bric
 {
     osg::State& state = *renderInfo.getState();
     if (batch.texture) {
-        if (!batch.texture->getTextureObject(state.getContextID())) {
+        const CoarseTexture voxels =
+            fittingTexture(*batch.texture, contextResources(state)->limits.texture3DSize);
+        if (!voxels.texture->getTextureObject(state.getContextID())) {
             count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
                   "osgVolumizer bricks uploaded", 1.0);
             count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
                   "osgVolumizer bytes uploaded", static_cast<double>(batch.textureBytes));
-            chooseFormat(state, *batch.texture);
+            chooseFormat(state, *voxels.texture);
         }
-        state.applyTextureAttribute(UNIT_VOXELS, batch.texture.get());
-        uniforms.set("textureScale", batch.textureScale);
-        uniforms.set("textureOffset", batch.textureOffset);
+        state.applyTextureAttribute(UNIT_VOXELS, voxels.texture.get());
+        uniforms.set("textureScale", batch.textureScale * voxels.scale);
+        uniforms.set("textureOffset", batch.textureOffset * voxels.scale + voxels.offset);
     }
     uniforms.set("clipMin", batch.clipMin);
     uniforms.set("clipMax", batch.clipMax);
@@ -210,8 +221,11 @@ VolumeDrawable::VolumeDrawable()
 void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     osg::State& state = *renderInfo.getState();
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    const Status supported = resources->limits.check();
+    reportOnce(supported);
     const auto* program = state.getLastAppliedProgramObject();
-    if (!_mesh || !_look || _mesh->batches.empty() || !program) return;
+    if (!supported || !_mesh || !_look || _mesh->batches.empty() || !program) return;
     const glm::dmat4 toEye = toGlm(state.getModelViewMatrix());
     const glm::dmat4 projection = toGlm(state.getProjectionMatrix());
     const Result<PixelRays> rays =
@@ -221,14 +235,13 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
         return;
     }
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const std::shared_ptr<ContextResources> resources = contextResources(state);
     const Uniforms uniforms(gl, *program);
     uniforms.set("frameToClip", projection * toEye);
     setLook(uniforms, *_look, *rays);
     if (_look->features.shading) setShading(uniforms, *_look, *rays, toEye, state);
-    if (_look->features.opaqueDepth)
-        setDepthTextures(state, uniforms, *rays, _look->features, resources->accumulation);
+    if (_look->features.opaqueDepth) setDepthTextures(state, uniforms, *rays, *_look, *resources);
     if (_look->table.texture) state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
+    setPaints(state, uniforms, _look->paints, UNIT_FIRST_PAINT);
     // Gathered values hide nothing, so they need no order, and no parts.
     std::optional<RayTarget> target;
     if (_look->features.gathers())

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Paint.h"
 #include "SceneLights.h"
 #include "TableTextures.h"
 #include "VolumeProgram.h"
@@ -63,10 +64,11 @@ struct VolumeLook
     glm::dmat3 frameToUnits{1.0};         ///< frame vector -> opacity units
     glm::dvec3 center{0.0};               ///< frame; the middle of the volume
     double referenceDepth = 0.0;          ///< eye units; depths of slabs are counted from here
-    double step = 1.0;                ///< between samples or slices: depth, distance or frame units
-    glm::dvec3 surfaceNormal{0.0};    ///< slices: frame units; along which `step` is counted
-    bool inFrontOfLayer = false;      ///< slabs: which part of a segment split by surfaces
-    int rank = 0;                     ///< slabs: between which ranks of surfaces
+    double step = 1.0;              ///< between samples or slices: depth, distance or frame units
+    glm::dvec3 surfaceNormal{0.0};  ///< slices: frame units; along which `step` is counted
+    bool inFrontOfLayer = false;    ///< slabs: which part of a segment split by surfaces
+    glm::vec2 surfaceWeights{0.0f}; ///< captured surfaces: 1 if colour, alpha is weighted by alpha
+    int rank = 0;                   ///< slabs: between which ranks of surfaces
     std::vector<glm::ivec4> scissors; ///< window rectangles to draw in; none: everywhere
     int maximumSteps = 1;
     glm::vec3 regionMin{0.0f}, regionMax{0.0f}; ///< slabs: box of the whole volume (frame)
@@ -74,6 +76,7 @@ struct VolumeLook
     /// which pixels a segment covers is for the shader to say, whose answer does not depend on how
     /// GL rounds vertices or whom it gives the pixels on an edge.
     glm::dvec3 pixelMargin{0.0};
+    std::vector<Paint> paints;
     std::vector<glm::vec4> planes; ///< the region's half-spaces (frame)
 };
 

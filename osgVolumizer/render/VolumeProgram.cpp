@@ -1,5 +1,6 @@
 #include "VolumeProgram.h"
 
+#include "Paint.h"
 #include "SharedStateSets.h"
 
 #include <osg/AlphaFunc>
@@ -37,6 +38,9 @@ std::string header(const ProgramFeatures& features)
     static const char* const functions[] = {"COMPOSITE", "MAXIMUM", "MINIMUM",
                                             "AVERAGE",   "SUM",     "ISOSURFACE"};
     define(true, functions[features.rayFunction]);
+    define(features.paintCount > 0, "PAINTED");
+    if (features.slotCount > 0)
+        text += "#define SLOTS " + std::to_string(features.slotCount) + "\n";
     define(features.shading, "SHADING");
     define(features.gradientTexture, "GRADIENT_TEXTURE");
     define(features.smoothTable, "SMOOTH_TABLE");
@@ -53,10 +57,11 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
     result->addShader(
         new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource(kind + ".vert.glsl")));
     std::string fragment = header(features);
-    for (const std::string& file :
-         {std::string("voxels.glsl"), std::string("transfer.glsl"), std::string("ray.glsl"),
-          std::string("shading.glsl"), kind + ".frag.glsl"})
+    for (const char* file :
+         {"voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl", "segment.glsl"})
         fragment += shaderSource(file);
+    if (features.paintCount > 0) fragment += paintSource(features.paintCount);
+    fragment += shaderSource(kind + ".frag.glsl");
     result->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));
     return result;
 }
@@ -68,11 +73,16 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->setName("osgVolumizer");
     set->setDataVariance(osg::Object::STATIC);
     set->setAttributeAndModes(program(features), StateAttribute::ON | StateAttribute::PROTECTED);
+    // What surfaces leave in the target's alpha need not be what they take of the light behind.
+    constexpr GLenum SOURCE1_COLOR = 0x88F9;
+    const bool captured = features.slotCount > 0;
     set->setAttributeAndModes(
-        new osg::BlendFunc(osg::BlendFunc::ONE, osg::BlendFunc::ONE_MINUS_SRC_ALPHA),
+        new osg::BlendFunc(osg::BlendFunc::ONE,
+                           captured ? SOURCE1_COLOR : GLenum(GL_ONE_MINUS_SRC_ALPHA)),
         StateAttribute::ON);
-    set->setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL, 0.0, 1.0, false),
-                              StateAttribute::ON);
+    set->setAttributeAndModes(
+        new osg::Depth(captured ? osg::Depth::ALWAYS : osg::Depth::LEQUAL, 0.0, 1.0, false),
+        StateAttribute::ON);
     // OSG's transparent bins drop fragments of alpha 0, which may still carry colour.
     set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f),
                               StateAttribute::OFF | StateAttribute::PROTECTED);
@@ -84,10 +94,11 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->addUniform(new osg::Uniform("lookupTable", int(UNIT_TABLE)));
     set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
     set->addUniform(new osg::Uniform("layerDepth", int(UNIT_LAYER_DEPTH)));
+    set->addUniform(new osg::Uniform("sortedSlots", int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform("slotColors", int(UNIT_SORTED_NEAR)));
     set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
     set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
     set->setRenderBinDetails(10, "DepthSortedBin");
-    set->setNestRenderBins(false);
     return set;
 }
 

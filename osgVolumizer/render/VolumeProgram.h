@@ -30,7 +30,11 @@ struct ProgramFeatures
     VolumeAppearance::RayFunction rayFunction = VolumeAppearance::COMPOSITE;
     bool shading = false;
     bool gradientTexture = false; ///< brick textures hold gradients besides values
-    int planeCount = 0;           ///< half-spaces that end the segment, besides the clip box
+    /// Slots of captured surfaces that are composited while marching, over all pixels of an area;
+    /// multiple of 4. Expects opaqueDepth, one brick, and the whole depth of the volume.
+    int slotCount = 0;
+    int paintCount = 0; ///< bricks of volumes that paint this one; no more than 4
+    int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
 
     /// Whether the rays' values are gathered in a target of their own, and drawn as one layer.
     bool gathers() const
@@ -42,8 +46,10 @@ struct ProgramFeatures
     /// Different for different features.
     std::uint64_t key() const
     {
-        std::uint64_t result =
-            static_cast<std::uint64_t>(planeCount) << 3 | static_cast<std::uint64_t>(rayFunction);
+        std::uint64_t result = static_cast<std::uint64_t>(planeCount) << 3;
+        result = (result | static_cast<std::uint64_t>(slotCount / 4)) << 3;
+        result = (result | static_cast<std::uint64_t>(paintCount)) << 3 |
+                 static_cast<std::uint64_t>(rayFunction);
         for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth,
                           layerDepth, ranked, spherical, exact, nearest, cubic, before,
                           preIntegrated, smoothTable, shading, gradientTexture})
@@ -61,7 +67,8 @@ enum TextureUnit : unsigned
     UNIT_LAYER_DEPTH,
     UNIT_SORTED_FAR, ///< the four farthest depths of a pixel's surfaces
     UNIT_SORTED_NEAR,
-    UNIT_FIRST_LAYER ///< and the following: captured depths
+    UNIT_FIRST_LAYER,                   ///< and the following: captured depths
+    UNIT_FIRST_PAINT = UNIT_FIRST_LAYER ///< and the following, in other programs
 };
 /// Vertex attributes.
 enum Attribute : unsigned

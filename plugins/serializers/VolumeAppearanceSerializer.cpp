@@ -147,6 +147,7 @@ const char* const lookupNames[] = {"AUTOMATIC_LOOKUP", "AFTER_INTERPOLATION",
 const char* const modeNames[] = {"VIEWPORT_ALIGNED", "AXIS_ALIGNED", "SPHERICAL"};
 const char* const rayFunctionNames[] = {"COMPOSITE", "MAXIMUM", "MINIMUM",
                                         "AVERAGE",   "SUM",     "ISOSURFACE"};
+const char* const ruleNames[] = {"ABSORB", "PAINT"};
 const char* const gradientNames[] = {"ON_THE_FLY", "PRECOMPUTED"};
 const char* const spaceNames[] = {"VIEW_VOLUME", "OBJECT", "PRIMITIVE"};
 
@@ -170,6 +171,7 @@ const std::vector<Property>& properties()
         sinceVersion(3, material()),
         sinceVersion(3, choice<&A::getGradients, &A::setGradients>("Gradients", gradientNames)),
         sinceVersion(3, accumulationBits()),
+        sinceVersion(3, choice<&A::getCombineRule, &A::setCombineRule>("CombineRule", ruleNames)),
         sinceVersion(3,
                      number<&A::getErrorTolerance, &A::setErrorTolerance>("ErrorTolerance", 0.0)),
         sinceVersion(

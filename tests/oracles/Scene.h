@@ -42,6 +42,9 @@ struct Volume
     std::shared_ptr<const Field> field;
     Table table;       ///< of the field's values
     double unit = 1.0; ///< opacity unit, in object units
+    /// Neither emits nor absorbs: what others emit in its region is multiplied by
+    /// 1 - alpha + alpha * colour of its table.
+    bool paint = false;
     /// Where set, these take the place of field and table: extinction times red, green and blue,
     /// and extinction, per unit.
     std::array<std::shared_ptr<const Field>, 4> medium;

@@ -1,5 +1,6 @@
 #include "Quadrature.h"
 #include "Ray.h"
+#include "ScreenTriangles.h"
 
 #include <algorithm>
 #include <atomic>
@@ -17,13 +18,14 @@ struct Path
     std::vector<Hit> hits;
 };
 
-Path meet(const Scene& scene, const Camera& camera, double x, double y)
+Path meet(const Scene& scene, const ScreenTriangles& triangles, const Camera& camera, double x,
+          double y)
 {
     Path path;
     const Ray ray = rayThrough(camera, x, y);
-    for (const Triangle& triangle : scene.triangles) {
+    for (const Triangle* triangle : triangles.at(x, y)) {
         Hit h;
-        if (hit(ray, camera, triangle, h)) path.hits.push_back(h);
+        if (hit(ray, camera, *triangle, h)) path.hits.push_back(h);
     }
     std::stable_sort(path.hits.begin(), path.hits.end(),
                      [](const Hit& a, const Hit& b) { return a.depth < b.depth; });
@@ -80,21 +82,35 @@ Medium mediumOf(const Crossing& c, double depth)
     return m;
 }
 
+glm::dvec3 paintOf(const Crossing& c, double depth)
+{
+    const double value = c.volume->field->value(c.fieldOrigin + depth * c.fieldDirection);
+    const glm::dvec4 color = c.volume->table.color(value);
+    return 1.0 - color.a + color.a * glm::dvec3(color);
+}
+
 void integratePiece(const std::vector<const Crossing*>& active, double t0, double t1,
                     double tolerance, Light& light)
 {
     if (active.empty()) return;
     if (active.size() == 1) {
+        if (active[0]->volume->paint) return;
         integrate([c = active[0]](double t) { return mediumOf(*c, t); }, t0, t1, tolerance, light);
         return;
     }
     const auto sum = [&active](double t) {
         Medium total;
+        glm::dvec3 paint(1.0);
         for (const Crossing* c : active) {
+            if (c->volume->paint) {
+                paint *= paintOf(*c, t);
+                continue;
+            }
             const Medium m = mediumOf(*c, t);
             total.extinction += m.extinction;
             total.emission += m.emission;
         }
+        total.emission *= paint;
         return total;
     };
     integrate(sum, t0, t1, tolerance, light);
@@ -107,19 +123,15 @@ void blend(const Hit& h, Light& light)
     light.transmittance *= 1.0 - alpha;
 }
 
-// What is met, by identity: neighbouring rays that meet the same things cross no silhouette.
-std::set<const void*> silhouetteKey(const Scene& scene, const Camera& camera, double x, double y)
+// The volumes and the numbers of the surfaces that are met: neighbouring rays that meet the same
+// cross no silhouette.
+std::set<std::pair<const Volume*, int>> silhouetteKey(const Path& path)
 {
-    std::set<const void*> key;
-    const Path path = meet(scene, camera, x, y);
+    std::set<std::pair<const Volume*, int>> key;
     for (const Crossing& c : path.crossings)
-        key.insert(c.volume);
-    for (const Hit& h : path.hits) {
-        const int surface = h.triangle->surface;
-        const auto first = std::find_if(scene.triangles.begin(), scene.triangles.end(),
-                                        [&](const Triangle& t) { return t.surface == surface; });
-        key.insert(&*first);
-    }
+        key.emplace(c.volume, 0);
+    for (const Hit& h : path.hits)
+        key.emplace(nullptr, h.triangle->surface);
     return key;
 }
 
@@ -142,11 +154,9 @@ support::FloatImage forEachPixel(const Camera& camera, PerPixel perPixel)
     return image;
 }
 
-} // namespace
-
-glm::dvec4 trace(const Scene& scene, const Camera& camera, double x, double y)
+// Light along what a ray meets, over the background.
+glm::dvec4 lightOf(const Path& path, const Scene& scene)
 {
-    const Path path = meet(scene, camera, x, y);
     const std::vector<double> depths = cuts(path);
     Light light;
     auto nextHit = path.hits.begin();
@@ -165,19 +175,33 @@ glm::dvec4 trace(const Scene& scene, const Camera& camera, double x, double y)
            light.transmittance * scene.background;
 }
 
+} // namespace
+
+glm::dvec4 trace(const Scene& scene, const Camera& camera, double x, double y)
+{
+    return lightOf(meet(scene, ScreenTriangles(scene, camera), camera, x, y), scene);
+}
+
 support::FloatImage render(const Scene& scene, const Camera& camera)
 {
-    return forEachPixel(camera, [&](double x, double y) { return trace(scene, camera, x, y); });
+    const ScreenTriangles triangles(scene, camera);
+    return forEachPixel(camera, [&](double x, double y) {
+        return lightOf(meet(scene, triangles, camera, x, y), scene);
+    });
 }
 
 support::FloatImage awayFromSilhouettes(const Scene& scene, const Camera& camera, double margin)
 {
+    const ScreenTriangles triangles(scene, camera);
+    const auto keyAt = [&](double x, double y) {
+        return silhouetteKey(meet(scene, triangles, camera, x, y));
+    };
     return forEachPixel(camera, [&](double x, double y) {
-        const auto key = silhouetteKey(scene, camera, x, y);
+        const auto key = keyAt(x, y);
         for (int corner = 0; corner < 4; ++corner) {
             const double u = x + (corner & 1 ? margin : -margin);
             const double v = y + (corner & 2 ? margin : -margin);
-            if (silhouetteKey(scene, camera, u, v) != key) return glm::dvec4(0.0);
+            if (keyAt(u, v) != key) return glm::dvec4(0.0);
         }
         return glm::dvec4(0.0, 0.0, 0.0, 1.0);
     });

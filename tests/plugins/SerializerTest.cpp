@@ -159,6 +159,7 @@ TEST_P(SerializerTest, AppearancesKeepRayFunctionsAndShading)
         a->setShading(i % 2 == 0);
         ASSERT_TRUE(a->setMaterial({0.1 * i, 1.0 / 3.0, 0.3 + i, 0.7 * i}).ok());
         a->setGradients(static_cast<VolumeAppearance::Gradients>(i % 2));
+        a->setCombineRule(static_cast<VolumeAppearance::CombineRule>(i % 2));
         ASSERT_TRUE(a->setAccumulationBits(bits[i % 3]).ok());
         ASSERT_TRUE(a->setErrorTolerance(1e-3 * i / 3.0).ok());
         ASSERT_TRUE(a->setTargetFrameTime(i / 60.0).ok());
@@ -172,6 +173,7 @@ TEST_P(SerializerTest, AppearancesKeepRayFunctionsAndShading)
         EXPECT_EQ(b->getMaterial().specular, a->getMaterial().specular);
         EXPECT_EQ(b->getMaterial().shininess, a->getMaterial().shininess);
         EXPECT_EQ(b->getGradients(), a->getGradients());
+        EXPECT_EQ(b->getCombineRule(), a->getCombineRule());
         EXPECT_EQ(b->getAccumulationBits(), a->getAccumulationBits());
         EXPECT_EQ(b->getErrorTolerance(), a->getErrorTolerance());
         EXPECT_EQ(b->getTargetFrameTime(), a->getTargetFrameTime());

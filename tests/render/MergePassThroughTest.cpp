@@ -91,7 +91,7 @@ TEST_F(PassThrough, VolumeWithoutVoxels)
 }
 
 // A volume that reaches nothing leaves others' pixels as they were.
-TEST_F(PassThrough, DISABLED_VolumeBesideTheSurfaces)
+TEST_F(PassThrough, VolumeBesideTheSurfaces)
 {
     const osg::ref_ptr<osg::Group> scene = surfaces();
     const RenderOptions options = viewOf();
@@ -153,7 +153,7 @@ TEST_F(PassThrough, SortCallbackOfTheApplicationStillRuns)
 }
 
 // Everything of a scene below a group with a bin of its own.
-TEST_F(PassThrough, DISABLED_NestedBinsShowTheSame)
+TEST_F(PassThrough, NestedBinsShowTheSame)
 {
     const osg::ref_ptr<osg::Group> scene = surfaces();
     scene->addChild(volume());
@@ -167,7 +167,7 @@ TEST_F(PassThrough, DISABLED_NestedBinsShowTheSame)
 }
 
 // Two such groups, each a scene of its own, one drawn over the other.
-TEST_F(PassThrough, DISABLED_BinsSideBySideAreDrawnInTheirOrder)
+TEST_F(PassThrough, BinsSideBySideAreDrawnInTheirOrder)
 {
     const auto part = [](int number, const osg::Matrixd& place) {
         const osg::ref_ptr<osg::Group> group = surfaces();
@@ -197,7 +197,7 @@ TEST_F(PassThrough, DISABLED_BinsSideBySideAreDrawnInTheirOrder)
 }
 
 // What translucent surfaces write to the depth buffer is there for what is drawn after.
-TEST_F(PassThrough, DISABLED_DepthWritesReachTheFramebuffer)
+TEST_F(PassThrough, DepthWritesReachTheFramebuffer)
 {
     RenderOptions options = viewOf();
     options.depth = true;

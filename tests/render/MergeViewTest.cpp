@@ -4,6 +4,8 @@
 
 #include <support/GLTest.h>
 
+#include <osgVolumizer/render/ContextResources.h>
+
 #include <osgViewer/CompositeViewer>
 
 using namespace osgVolumizer;
@@ -292,6 +294,23 @@ TEST_F(MergeView, ContextsComeAndGo)
         EXPECT_FALSE(second.render().empty());
         EXPECT_EQ(renderer.glError(), 0u);
         EXPECT_EQ(second.glError(), 0u);
+    }
+}
+
+// Closing a context frees what was made in it, wherever the scene has gone in the meantime.
+TEST_F(MergeView, ClosingAContextFreesItsResources)
+{
+    const RenderOptions options = viewOf();
+    const std::size_t before = render::contextResourcesCount();
+    const FloatImage first = alone(options.view, options.projection);
+    EXPECT_EQ(render::contextResourcesCount(), before);
+    for (const bool detached : {false, true}) {
+        support::SceneRenderer renderer(_scene.root(), options);
+        EXPECT_EQ(support::compare(renderer.render(), first).maximum, 0.0) << detached;
+        EXPECT_EQ(render::contextResourcesCount(), before + 1);
+        if (detached) renderer.viewer().setSceneData(new osg::Group);
+        renderer.viewer().getCamera()->getGraphicsContext()->close();
+        EXPECT_EQ(render::contextResourcesCount(), before);
     }
 }
 

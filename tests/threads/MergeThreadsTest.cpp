@@ -121,6 +121,10 @@ TEST_P(MergeThreads, ChangingSceneEndsLikeAStillOne)
     const osg::ref_ptr<PictureTarget> target = new PictureTarget(*slave, 64, 64);
     viewer.addSlave(slave, osg::Matrixd(), osg::Matrixd());
     viewer.realize();
+    // In its first frame each of OSG's renderers sets the view's lighting mode in the state set
+    // that all cameras of the view share, without a lock: no threads yet.
+    viewer.stopThreading();
+    viewer.frame();
     viewer.startThreading();
     target->request(FRAMES);
     const FloatImage picture = renderer.render(), other = target->wait();

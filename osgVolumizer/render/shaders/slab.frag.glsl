@@ -7,7 +7,12 @@
 #define OPAQUE_ENOUGH 3e-5
 
 flat in vec2 slab; // nearest and farthest depth, from the reference depth
+#ifdef SLOTS
+layout(location = 0, index = 0) out vec4 fragColor;
+layout(location = 0, index = 1) out vec4 fragThrough; // what is left of the light behind
+#else
 out vec4 fragColor;
+#endif
 
 uniform vec3 regionMin, regionMax; // of the whole volume
 uniform vec3 clipMin, clipMax;     // of the brick
@@ -29,6 +34,12 @@ uniform bool inFrontOfLayer;  // which part is drawn
 #ifdef RANKED
 uniform sampler2D sortedFar, sortedNear; // window depths of the pixel's surfaces, far to near; -1: no more
 uniform int rank;                        // of the surface that ends the segment at its near end
+#endif
+
+#ifdef SLOTS
+uniform sampler2DArray sortedSlots; // window depths of the pixel's surfaces, near to far, then their slots
+uniform sampler2DArray slotColors;
+uniform vec2 surfaceWeights; // 1: colour, alpha is yet to be weighted by alpha
 #endif
 
 #ifdef OPAQUE_DEPTH
@@ -57,33 +68,6 @@ float sortedDepth(int i)
     return i < 8 ? texelFetch(sortedNear, pixel, 0)[i - 4] : -1.0;
 }
 #endif
-
-// Narrows the segment to a half-space.
-void clipToPlane(vec4 plane, vec3 origin, vec3 direction, inout float tNear, inout float tFar)
-{
-    float distance = dot(plane.xyz, origin) + plane.w;
-    float rate = dot(plane.xyz, direction);
-    if (rate > 0.0)
-        tNear = max(tNear, -distance / rate);
-    else if (rate < 0.0)
-        tFar = min(tFar, -distance / rate);
-    else if (distance < 0.0)
-        tFar = tNear;
-}
-
-// The segment in a box; boxes are half-open, so that neighbours share no ray and leave none out.
-vec2 boxSegment(vec3 low, vec3 high, vec3 origin, vec3 direction)
-{
-    bvec3 parallel = equal(direction, vec3(0.0));
-    vec3 safe = mix(direction, vec3(1.0), parallel);
-    vec3 a = (low - origin) / safe;
-    vec3 b = (high - origin) / safe;
-    vec3 always = mix(vec3(1e30), vec3(-1e30), lessThanEqual(low, origin));
-    always = mix(vec3(1e30), always, lessThan(origin, high));
-    vec3 enter = mix(min(a, b), always, parallel);
-    vec3 leave = mix(max(a, b), -always, parallel);
-    return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
-}
 
 // Number of steps for a segment, such that their mean over all segments is the period.
 float stepsOf(float tNear, float tFar)
@@ -211,6 +195,9 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 #ifdef SHADING
             color = lit(vec4(color, 1.0), origin, direction, t).rgb;
 #endif
+#ifdef PAINTED
+            color = painted(color, origin + t * direction);
+#endif
             return vec4(color, 1.0);
         }
         before = after;
@@ -240,6 +227,9 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 #ifdef SHADING
         c = lit(c, origin, direction, 0.5 * (t + next));
 #endif
+#ifdef PAINTED
+        c.rgb = painted(c.rgb, origin + 0.5 * (t + next) * direction);
+#endif
         float through = exp2(-c.a * (next - t) * unitsPerDepth);
         color += transmittance * (1.0 - through) * c.rgb;
         transmittance *= through;
@@ -268,12 +258,60 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 #ifdef SHADING
         c = lit(c, origin, direction, tNear + (i + 0.5) * dt);
 #endif
+#ifdef PAINTED
+        c.rgb = painted(c.rgb, p + i * dp);
+#endif
         float through = exp2(-c.a * stepUnits);
         color += transmittance * (1.0 - through) * c.rgb;
         transmittance *= through;
         if (transmittance < OPAQUE_ENOUGH) break;
     }
     return vec4(color, 1.0 - transmittance);
+}
+#endif
+
+// Light of a segment. Colours jump where paint begins, so its parts end there.
+vec4 light(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+#ifdef PAINTED
+    vec4 sum = vec4(0.0);
+    for (float t = tNear; t < tFar && sum.a < 1.0 - OPAQUE_ENOUGH;) {
+        float next = nextCut(origin, direction, t, tFar);
+        sum += (1.0 - sum.a) * march(origin, direction, t, next, brick);
+        t = next;
+    }
+    return sum;
+#else
+    return march(origin, direction, tNear, tFar, brick);
+#endif
+}
+
+#ifdef SLOTS
+// The pixel's surfaces, near to far, and the volume between them.
+void compositeSurfaces(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float enter = max(tNear, brick.x), leave = min(tFar, brick.y);
+    fragColor = vec4(0.0);
+    float through = 1.0, t = enter;
+    vec4 depths;
+    for (int i = 0; i <= SLOTS && through > OPAQUE_ENOUGH; ++i) {
+        if (i < SLOTS && (i & 3) == 0) depths = texelFetch(sortedSlots, ivec3(pixel, i >> 2), 0);
+        float depth = i < SLOTS ? depths[i & 3] : 2.0;
+        float end = depth <= 1.0 ? min(rayAt(depth), leave) : leave;
+        if (t < end) {
+            vec4 c = light(origin, direction, t, end, brick);
+            fragColor += through * c;
+            through *= 1.0 - c.a;
+            t = end;
+        }
+        if (depth > 1.0) break;
+        int four = int(texelFetch(sortedSlots, ivec3(pixel, SLOTS / 4 + (i >> 4)), 0)[(i >> 2) & 3]);
+        vec4 c = texelFetch(slotColors, ivec3(pixel, (four >> (5 * (i & 3))) & 31), 0);
+        fragColor += through * c * mix(vec2(1.0), vec2(c.a), surfaceWeights).xxxy;
+        through *= 1.0 - c.a;
+    }
+    fragThrough = vec4(through);
 }
 #endif
 
@@ -306,7 +344,10 @@ void main()
     }
     if (nearer >= 0.0) tNear = max(tNear, rayAt(nearer));
 #endif
+#ifdef SLOTS
+    compositeSurfaces(origin, direction, tNear, tFar, brick);
+#else
     if (!(max(tNear, brick.x) < min(tFar, brick.y))) discard;
-
-    fragColor = march(origin, direction, tNear, tFar, brick);
+    fragColor = light(origin, direction, tNear, tFar, brick);
+#endif
 }

@@ -6,5 +6,9 @@ uniform mat4 frameToClip;
 void main()
 {
     slab = slabIn;
+#ifdef SLOTS
+    gl_Position = vec4(position, 1.0); // in device coordinates
+#else
     gl_Position = frameToClip * vec4(position, 1.0);
+#endif
 }

@@ -1,6 +1,9 @@
 // One slice: the layer between two sampling surfaces, as thick as this pixel's ray finds it.
 
 in vec3 voxelCoordinate;
+#ifdef PAINTED
+in vec3 framePosition;
+#endif
 #ifdef VERTEX_COLORS
 in vec4 vertexColor;
 #endif
@@ -54,6 +57,9 @@ void main()
 #ifdef SHADING
     vec3 directionEye = rayDirectionEye * vec3(gl_FragCoord.xy - windowCenter, 1.0);
     c.rgb = shade(c.rgb, voxelCoordinate, eyePosition, -normalize(directionEye));
+#endif
+#ifdef PAINTED
+    c.rgb = painted(c.rgb, framePosition);
 #endif
     float depth = 0.6931471806 * c.a * units; // optical
     // 1 - exp(-depth) without cancelling the digits of thin layers.

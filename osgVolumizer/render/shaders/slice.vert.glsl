@@ -8,6 +8,9 @@ out vec4 vertexColor;
 #endif
 layout(location = 4) in float spacingIn;
 out vec3 voxelCoordinate;
+#ifdef PAINTED
+out vec3 framePosition;
+#endif
 flat out float spacing; // between surfaces
 uniform mat4 frameToClip;
 #ifdef SHADING
@@ -24,6 +27,9 @@ void main()
 #endif
 #ifdef VERTEX_COLORS
     vertexColor = colorIn;
+#endif
+#ifdef PAINTED
+    framePosition = position;
 #endif
     spacing = spacingIn;
 #ifdef SHADING

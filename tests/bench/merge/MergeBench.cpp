@@ -1,6 +1,7 @@
 // What translucent geometry costs in and around a volume: time of a frame against that of the same
-// scene with the geometry hidden. Frames of both are interleaved, and medians compared, so that a
-// busy machine slows both.
+// scene with the geometry hidden, and of the geometry alone. Frames of all are interleaved, and
+// medians compared, so that a busy machine slows all. CPU time is that of the whole process, so
+// that with a software rasteriser it is what a frame costs, whatever else the machine does.
 //
 //   mergebench [frames] [name]
 
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <random>
 
 using namespace osgVolumizer;
@@ -63,6 +65,13 @@ std::vector<Bench> makeBenches()
     return benches;
 }
 
+double processMilliseconds()
+{
+    timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
 double median(std::vector<double> v)
 {
     std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
@@ -81,19 +90,33 @@ void run(const Bench& bench, int frames)
     support::RenderOptions options;
     options.size(512, 512).perspective(30.0).frameScene(volume.node->getBound());
     support::SceneRenderer renderer(scene, options);
-    std::vector<double> times[2];
+    enum Show
+    {
+        HIDDEN,
+        SHOWN,
+        ALONE,
+        COUNT
+    };
+    std::vector<double> wall[COUNT], cpu[COUNT];
     for (int i = -1; i < frames; ++i) {
-        for (int shown : {0, 1}) {
-            bench.surfaces->setNodeMask(shown ? ~0u : 0u);
+        for (const Show show : {ALONE, HIDDEN, SHOWN}) {
+            bench.surfaces->setNodeMask(show != HIDDEN ? ~0u : 0u);
+            volume.node->setNodeMask(show != ALONE ? ~0u : 0u);
+            const double before = processMilliseconds();
             const support::FloatImage picture = renderer.render();
-            if (i < 0 && shown) support::savePicture(picture, "bench_" + bench.name);
-            if (i >= 0) times[shown].push_back(renderer.milliseconds().front());
+            if (i < 0 && show == SHOWN) support::savePicture(picture, "bench_" + bench.name);
+            if (i < 0) continue;
+            cpu[show].push_back(processMilliseconds() - before);
+            wall[show].push_back(renderer.milliseconds().front());
         }
     }
-    const double hidden = median(times[0]), shown = median(times[1]);
+    const double hidden = median(wall[HIDDEN]), shown = median(wall[SHOWN]);
     std::printf("%-45s hidden %7.1f ms  shown %7.1f ms  ratio %.3f  target %.2f %s\n",
                 bench.name.c_str(), hidden, shown, shown / hidden, bench.target,
                 shown <= bench.target * hidden ? "" : "  MISSED");
+    const double cpuHidden = median(cpu[HIDDEN]), cpuShown = median(cpu[SHOWN]);
+    std::printf("%-45s hidden %7.1f ms  shown %7.1f ms  ratio %.3f  surfaces alone %.1f ms\n",
+                "    CPU", cpuHidden, cpuShown, cpuShown / cpuHidden, median(cpu[ALONE]));
     for (const auto& counter : renderer.counters())
         std::printf("    %s %g\n", counter.first.c_str(), counter.second);
 }

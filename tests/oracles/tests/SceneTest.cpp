@@ -1,6 +1,7 @@
 #include <oracles/ClosedForms.h>
 #include <oracles/Grid.h>
 #include <oracles/Ray.h>
+#include <oracles/ScreenTriangles.h>
 
 #include <gtest/gtest.h>
 
@@ -288,4 +289,38 @@ TEST(Trace, SilhouettesAreFound)
             const bool rim = (near(x) && within(y)) || (near(y) && within(x));
             EXPECT_EQ(away.at(x, y).a, rim ? 0.0f : 1.0f) << x << " " << y;
         }
+}
+
+TEST(ScreenTriangles, LeaveOutNothingThatARayHits)
+{
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(-3.0, 3.0), size(0.01, 4.0), window(-8.0, 72.0);
+    Scene scene;
+    for (int i = 0; i < 400; ++i) {
+        Triangle triangle;
+        const glm::dvec3 center(place(random), place(random), place(random));
+        const double s = size(random);
+        for (glm::dvec3& corner : triangle.corner)
+            corner = center + s * glm::dvec3(place(random), place(random), place(random));
+        scene.triangles.push_back(triangle);
+    }
+    for (Camera camera : {perspectiveCamera(64), frontalCamera(64)}) {
+        camera.nearDepth = 0.0; // triangles reach behind the eye
+        const ScreenTriangles triangles(scene, camera);
+        std::size_t listed = 0, hits = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const double x = window(random), y = window(random);
+            const ScreenTriangles::List& list = triangles.at(x, y);
+            const bool shown = x >= 0.0 && y >= 0.0 && x < 64.0 && y < 64.0;
+            listed += shown ? list.size() : 0;
+            for (const Triangle& triangle : scene.triangles) {
+                Hit h;
+                if (!hit(rayThrough(camera, x, y), camera, triangle, h)) continue;
+                ++hits;
+                EXPECT_TRUE(std::find(list.begin(), list.end(), &triangle) != list.end());
+            }
+        }
+        EXPECT_GT(hits, 10000u);
+        EXPECT_LT(listed, 2000u * 400u * 3 / 4);
+    }
 }

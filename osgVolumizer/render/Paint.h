@@ -1,0 +1,50 @@
+#pragma once
+
+#include "BrickTextures.h"
+#include "TableTextures.h"
+
+#include <osg/State>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <string>
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+struct VolumeInstance;
+class Uniforms;
+
+/// One brick of a volume that paints others, as one of those sees it.
+struct Paint
+{
+    /// More bricks, or half-spaces of its region, than these are not painted with.
+    static constexpr int MAXIMUM_COUNT = 4, MAXIMUM_PLANES = 8;
+
+    BrickTexture voxels;
+    TableTexture table;
+    glm::dmat4 fromFrame{1.0};                         ///< frame of the painted volume -> voxels
+    glm::vec3 textureScale{1.0f}, textureOffset{0.0f}; ///< voxel -> texture coordinate
+    glm::vec3 boxMin{0.0f}, boxMax{0.0f};              ///< voxels
+    std::vector<glm::vec4> planes;                     ///< voxels; MAXIMUM_PLANES
+    glm::vec2 valueToEntry{1.0f, 0.0f};
+    bool rgba = false, nearest = false;
+};
+
+/// Gives volumes the paint of those whose combine rule says so, and takes these out of the list:
+/// they show nothing by themselves. The result does not depend on the order of volumes.
+void applyPaint(std::vector<VolumeInstance*>& volumes);
+
+/// Shader code that multiplies colours by `count` paints: segments() and painted().
+std::string paintSource(int count);
+/// Textures and uniforms of paints, for a program that has that code; from `firstUnit` on, two
+/// units each.
+void setPaints(osg::State& state, const Uniforms& uniforms, const std::vector<Paint>& paints,
+               unsigned firstUnit);
+
+} // namespace render
+} // namespace osgVolumizer

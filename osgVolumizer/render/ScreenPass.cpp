@@ -1,0 +1,67 @@
+#include "ScreenPass.h"
+
+#include "ScissorScope.h"
+
+#include <osg/ColorMask>
+#include <osg/Depth>
+#include <osg/PolygonMode>
+#include <osg/Program>
+
+#include <array>
+
+namespace osgVolumizer {
+namespace render {
+
+std::string shaderSource(const std::string& name); // generated from shaders/*.glsl
+
+osg::ref_ptr<osg::StateSet> screenState(const std::string& fragmentShader, bool writeDepth,
+                                        const std::string& code)
+{
+    osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->setName("osgVolumizer " + fragmentShader);
+    const std::string version = "#version 330\n";
+    program->addShader(
+        new osg::Shader(osg::Shader::VERTEX, version + shaderSource("screen.vert.glsl")));
+    program->addShader(
+        new osg::Shader(osg::Shader::FRAGMENT, version + code + shaderSource(fragmentShader)));
+    osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+    set->setAttributeAndModes(program, FORCE_ON);
+    set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, writeDepth), FORCE_ON);
+    for (GLenum mode : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_ALPHA_TEST})
+        set->setMode(mode, FORCE_OFF);
+    for (GLenum plane = 0; plane < 6; ++plane)
+        set->setMode(GL_CLIP_PLANE0 + plane, FORCE_OFF);
+    // Viewers show wire frames by a state above the scene.
+    set->setAttribute(new osg::PolygonMode, FORCE_ON);
+    const bool color = !writeDepth;
+    set->setAttribute(new osg::ColorMask(color, color, color, color), FORCE_ON);
+    return set;
+}
+
+// One triangle over the whole viewport.
+void drawScreen(osg::State& state, ContextResources& resources, const glm::ivec4& area)
+{
+    static const std::array<float, 6> corners = {-1.0f, -1.0f, 3.0f, -1.0f, -1.0f, 3.0f};
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const ScissorScope scissor;
+    if (!scissor.set(area)) return;
+    state.lazyDisablingOfVertexAttributes();
+    state.applyDisablingOfVertexAttributes();
+    resources.vertices.stream(gl, GL_ARRAY_BUFFER_ARB, corners.data(), sizeof(corners));
+    gl.glEnableVertexAttribArray(0);
+    gl.glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    gl.glDisableVertexAttribArray(0);
+    gl.glBindBuffer(GL_ARRAY_BUFFER_ARB, 0);
+    state.unbindVertexBufferObject();
+}
+
+void setUniform(osg::State& state, const char* name, int value)
+{
+    if (const auto* program = state.getLastAppliedProgramObject())
+        state.get<osg::GLExtensions>()->glUniform1i(
+            program->getUniformLocation(osg::Uniform::getNameID(name)), value);
+}
+
+} // namespace render
+} // namespace osgVolumizer
