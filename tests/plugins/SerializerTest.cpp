@@ -190,7 +190,7 @@ TEST_P(SerializerTest, OlderVersionsKeepDefaults)
     a->setShading(true);
     std::string content = write(*a);
     const std::size_t version =
-        content.find("1 3", content.find("Version", content.find("Sampling")));
+        content.find("1 4", content.find("Version", content.find("Sampling")));
     ASSERT_NE(version, std::string::npos);
     content[version + 2] = '2';
     const auto read = SerializerTest::read(content);
