@@ -32,10 +32,10 @@ VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp&
     : osg::Group(o, op), _voxels(o._voxels), _lookupTable(o._lookupTable), _technique(o._technique),
       _interpolation(o._interpolation), _lookup(o._lookup), _exactFiltering(o._exactFiltering),
       _rayFunction(o._rayFunction), _isoValue(o._isoValue), _shading(o._shading),
-      _material(o._material), _gradients(o._gradients), _combineRule(o._combineRule), _accumulationBits(o._accumulationBits),
-      _sampling(o._sampling), _errorTolerance(o._errorTolerance),
-      _targetFrameTime(o._targetFrameTime), _opacityUnit(o._opacityUnit),
-      _tableTextures(new render::TableTextures)
+      _material(o._material), _gradients(o._gradients), _combineRule(o._combineRule),
+      _accumulationBits(o._accumulationBits), _sampling(o._sampling),
+      _errorTolerance(o._errorTolerance), _targetFrameTime(o._targetFrameTime),
+      _opacityUnit(o._opacityUnit), _tableTextures(new render::TableTextures)
 {
 }
 

@@ -82,11 +82,14 @@ public:
         ISOSURFACE
     };
     /// What happens where volumes overlap.
-    enum CombineRule {
+    enum CombineRule
+    {
         /// Extinctions add, and each emits its own colour: clouds in one another.
         ABSORB,
-        /// The volume shows nothing by itself, and neither emits nor absorbs: it paints the others. Where
-        /// its table gives colour p and opacity a (of a layer one unit thick), the colours that overlapping
+        /// The volume shows nothing by itself, and neither emits nor absorbs: it paints the others.
+        /// Where
+        /// its table gives colour p and opacity a (of a layer one unit thick), the colours that
+        /// overlapping
         /// volumes emit, lit or not, are multiplied by 1 - a + a * p; their opacity stays. Several
         /// paint one after another, in any order. So a dose is painted over anatomy. Neither
         /// lit nor composited itself, its ray function does not matter; interpolation is nearest or

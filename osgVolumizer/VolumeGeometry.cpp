@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <string>
 
 namespace osgVolumizer {
 
@@ -19,6 +20,7 @@ struct VolumeGeometry::Private
     mutable std::mutex mutex;
     TetraSetPtr tetraSet = std::make_shared<const core::TetraSet>();
     std::atomic<unsigned> modifiedCount{0};
+    std::atomic<double> slackAngle{0.0};
     render::GeometryCache cache;
 };
 
@@ -100,6 +102,7 @@ VolumeGeometry::VolumeGeometry(const VolumeGeometry& o, const osg::CopyOp& op)
     : osg::Drawable(o, op), _private(new Private)
 {
     _private->tetraSet = o.getTetraSet();
+    _private->slackAngle = o.getSlackAngle();
 }
 
 VolumeGeometry::~VolumeGeometry() = default;
@@ -197,6 +200,20 @@ osg::BoundingSphere VolumeGeometry::computeBound() const
 }
 
 void VolumeGeometry::drawImplementation(osg::RenderInfo&) const {}
+
+Status VolumeGeometry::setSlackAngle(double radians)
+{
+    if (!(radians >= 0.0) || !std::isfinite(radians))
+        return {ErrorCode::VALUE_INVALID,
+                "VolumeGeometry: the slack angle is " + std::to_string(radians) + "."};
+    _private->slackAngle = radians;
+    return {};
+}
+
+double VolumeGeometry::getSlackAngle() const
+{
+    return _private->slackAngle;
+}
 
 render::GeometryCache& VolumeGeometry::geometryCache() const
 {

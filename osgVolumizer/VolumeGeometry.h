@@ -50,6 +50,13 @@ public:
     /// Grows with every setTetraSet(). Thread safe.
     unsigned getModifiedCount() const;
 
+    /// Slices of an earlier frame are drawn again while the view has turned by no more than this,
+    /// in radians; 0 (default): only while nothing has changed. Saves polygonizing large meshes in
+    /// every frame of a slow turn. Has no effect where translucent things are merged with the
+    /// volume, and on slabs. Negative or not finite: VALUE_INVALID, and the old one stays.
+    Status setSlackAngle(double radians);
+    double getSlackAngle() const;
+
     void accept(osg::NodeVisitor& visitor) override;
     osg::BoundingBox computeBoundingBox() const override;
     osg::BoundingSphere computeBound() const override;

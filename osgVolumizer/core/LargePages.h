@@ -12,12 +12,10 @@ namespace core {
 /// otherwise. Does nothing for small arrays, and where the system has no such thing.
 void adviseLargePages(void* from, std::size_t bytes);
 
-/// Makes `values` at least `size` long, in large pages where it has to grow. Its first `keep`
-/// values survive, the others are undefined.
+/// What growLarge() does where there is too little room.
 template <class T>
-void growLarge(std::vector<T>& values, std::size_t size, std::size_t keep = 0)
+void growLargeNow(std::vector<T>& values, std::size_t size, std::size_t keep)
 {
-    if (values.size() >= size) return;
     if (values.capacity() < size) {
         std::vector<T> grown;
         grown.reserve(keep == 0 ? size : size + size / 2);
@@ -26,6 +24,14 @@ void growLarge(std::vector<T>& values, std::size_t size, std::size_t keep = 0)
         values.swap(grown);
     }
     values.resize(std::min(values.capacity(), size + size / 16));
+}
+
+/// Makes `values` at least `size` long, in large pages where it has to grow. Its first `keep`
+/// values survive, the others are undefined.
+template <class T>
+inline void growLarge(std::vector<T>& values, std::size_t size, std::size_t keep = 0)
+{
+    if (values.size() < size) growLargeNow(values, size, keep);
 }
 
 /// Makes `values` exactly `size` long; all of them are undefined.

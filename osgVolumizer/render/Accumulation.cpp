@@ -1,5 +1,6 @@
 #include "Accumulation.h"
 
+#include "ReportOnce.h"
 #include "ScissorScope.h"
 #include "ScreenPass.h"
 #include "SharedStateSets.h"
@@ -43,9 +44,15 @@ osg::ref_ptr<osg::Texture2D> makeDepth(int width, int height, GLenum format)
                       format == GL_DEPTH_COMPONENT32F ? GL_FLOAT : GL_UNSIGNED_INT);
 }
 
-GLenum colorFormatOf(int bits)
+// The format of the target. Without float targets fixed point is the next best, which holds all
+// that a framebuffer shows.
+GLenum colorFormatOf(int bits, const ContextLimits& limits)
 {
-    return bits <= 8 ? GL_RGBA8 : bits <= 16 ? GL_RGBA16F_ARB : GL_RGBA32F_ARB;
+    if (bits <= 8) return GL_RGBA8;
+    if (limits.floatTargets) return bits <= 16 ? GL_RGBA16F_ARB : GL_RGBA32F_ARB;
+    reportOnce({ErrorCode::NOT_SUPPORTED, "the context has no float targets; volumes are "
+                                          "accumulated in fixed point, 16 bits a channel"});
+    return GL_RGBA16;
 }
 
 // Binds a texture for raw GL calls, and makes OSG bind its own again before the next leaf.
@@ -302,7 +309,7 @@ void Accumulation::begin(osg::RenderInfo& renderInfo)
                 depthFormatOfFramebuffer(*resources, _drawFramebuffer, _sampleBuffers > 0));
     copyOpaqueDepth(state, buffers);
     if (needsTarget(*resources)) {
-        ensureTarget(state, buffers, colorFormatOf(s.bits));
+        ensureTarget(state, buffers, colorFormatOf(s.bits, resources->limits));
         copyToTarget(state, buffers);
         _redirected = true;
     }

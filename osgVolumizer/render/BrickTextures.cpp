@@ -1,5 +1,7 @@
 #include "BrickTextures.h"
 
+#include "CoarseTexture.h"
+
 #include "../core/voxels/Half.h"
 #include "../core/voxels/VoxelData.h"
 
@@ -207,16 +209,24 @@ BrickTexture BrickTextures::get(const Voxels& voxels, std::int64_t brick, bool g
 
 void BrickTextures::resizeGLObjectBuffers(unsigned int maximum)
 {
+    _cells.resizeGLObjectBuffers(maximum);
     std::lock_guard<std::mutex> lock(_mutex);
     for (auto& entry : _entries)
-        if (entry.second.brick.texture) entry.second.brick.texture->resizeGLObjectBuffers(maximum);
+        if (entry.second.brick.texture) {
+            entry.second.brick.texture->resizeGLObjectBuffers(maximum);
+            resizeCoarseTextures(*entry.second.brick.texture, maximum);
+        }
 }
 
 void BrickTextures::releaseGLObjects(osg::State* state) const
 {
+    _cells.releaseGLObjects(state);
     std::lock_guard<std::mutex> lock(_mutex);
     for (const auto& entry : _entries)
-        if (entry.second.brick.texture) entry.second.brick.texture->releaseGLObjects(state);
+        if (entry.second.brick.texture) {
+            entry.second.brick.texture->releaseGLObjects(state);
+            releaseCoarseTextures(*entry.second.brick.texture, state);
+        }
 }
 
 void chooseFormat(osg::State& state, osg::Texture3D& texture)

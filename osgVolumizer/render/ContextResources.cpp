@@ -92,7 +92,7 @@ private:
 
 } // namespace
 
-ContextResources::ContextResources()
+ContextResources::ContextResources(osg::State& state) : limits(queryContextLimits(state))
 {
     osg::setGLExtensionFuncPtr(glGetFramebufferAttachmentParameteriv,
                                "glGetFramebufferAttachmentParameteriv",
@@ -117,7 +117,7 @@ std::shared_ptr<ContextResources> contextResources(osg::State& state)
     std::lock_guard<std::mutex> lock(registryMutex());
     std::shared_ptr<ContextResources>& entry = registry()[state.getContextID()];
     if (!entry) {
-        entry = std::make_shared<ContextResources>();
+        entry = std::make_shared<ContextResources>(state);
         osg::get<ContextWatch>(state.getContextID());
     }
     return entry;

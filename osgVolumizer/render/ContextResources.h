@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ContextLimits.h"
+
 #include <osg/GLExtensions>
 #include <osg/Program>
 #include <osg/State>
@@ -79,8 +81,9 @@ struct RayBuffers
 /// What the renderer keeps per context, made when first needed.
 struct ContextResources
 {
-    ContextResources();
+    explicit ContextResources(osg::State& state);
 
+    ContextLimits limits;
     using GetAttachmentParameter = void(GL_APIENTRY*)(GLenum, GLenum, GLenum, GLint*);
     GetAttachmentParameter glGetFramebufferAttachmentParameteriv = nullptr; ///< not one of OSG's
     StreamBuffer vertices, indices;

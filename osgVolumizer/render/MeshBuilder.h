@@ -15,7 +15,8 @@ namespace render {
 std::shared_ptr<const VolumeMesh> slabMesh(const VolumeInstance& volume, const core::View& view,
                                            const std::vector<core::DepthInterval>& farToNear);
 
-/// The faces of a volume's sampling surfaces in one view; made once, drawn interval by interval.
+/// The faces of a volume's sampling surfaces in one view; made once, or taken from an earlier frame
+/// of an unchanged view; drawn interval by interval.
 class SlicedVolume
 {
 public:
@@ -23,9 +24,11 @@ public:
     /// the only family that other things can be merged with
     Status polygonize(const VolumeInstance& volume, const core::View& view, bool viewAligned);
     /// Distance between surfaces, and the frame direction along which it is counted.
-    double spacing() const { return _slices.spacing; }
+    double spacing() const { return _slices->spacing; }
     glm::dvec3 surfaceNormal() const { return _surfaceNormal; }
     bool spherical() const { return _spherical; }
+    /// Whether there were no faces of an earlier frame.
+    bool polygonized() const { return _polygonized; }
     /// The faces of the surfaces in an interval, brick by brick, far to near. The interval is
     /// half-open at its near end.
     std::shared_ptr<const VolumeMesh> mesh(const VolumeInstance& volume,
@@ -37,9 +40,9 @@ private:
     std::shared_ptr<const VolumeMesh> makeMesh(const VolumeInstance& volume, int firstSurface,
                                                int lastSurface) const;
 
-    core::PolygonizedFaces _slices;
+    std::shared_ptr<const core::PolygonizedFaces> _slices;
     glm::dvec3 _surfaceNormal{0.0};
-    bool _spherical = false;
+    bool _spherical = false, _polygonized = false;
 };
 
 /// The whole of a volume of one brick as one triangle over the viewport, in device coordinates, for

@@ -2,6 +2,7 @@
 
 #include "../VolumeGeometry.h"
 #include "../Voxels.h"
+#include "SliceCache.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/mat3x3.hpp>
@@ -140,6 +141,8 @@ std::shared_ptr<const PreparedGeometry> prepare(const core::TetraSet& set, const
 }
 
 } // namespace
+
+GeometryCache::GeometryCache() : _slices(std::make_shared<SliceCache>()) {}
 
 std::shared_ptr<const PreparedGeometry> GeometryCache::get(const VolumeGeometry& geometry,
                                                            const Voxels* voxels)

@@ -36,10 +36,15 @@ struct PreparedGeometry
     std::vector<core::Plane> obliquePlanes;
 };
 
+class SliceCache;
+
 /// Prepared geometries of one VolumeGeometry, by what they were made from. Thread safe.
 class GeometryCache
 {
 public:
+    GeometryCache();
+    /// The slices of all views.
+    SliceCache& slices() const { return *_slices; }
     std::shared_ptr<const PreparedGeometry> get(const VolumeGeometry& geometry,
                                                 const Voxels* voxels);
 
@@ -53,6 +58,7 @@ private:
     };
     static constexpr std::size_t CAPACITY = 4;
 
+    std::shared_ptr<SliceCache> _slices;
     std::mutex _mutex;
     std::list<Entry> _entries; ///< most recent first
 };

@@ -1,11 +1,14 @@
 #include "VolumeDrawable.h"
 
 #include "../Error.h"
+#include "BrickCells.h"
 #include "BrickTextures.h"
+#include "CoarseTexture.h"
 #include "ContextResources.h"
 #include "Matrices.h"
 #include "PixelRays.h"
 #include "RayTarget.h"
+#include "ReportOnce.h"
 #include "ScissorScope.h"
 #include "Statistics.h"
 #include "Uniforms.h"
@@ -89,7 +92,7 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
     uniforms.set("frameToUnits", look.frameToUnits);
     if (look.table.texture) setTable(uniforms, look);
     if (look.features.slab) {
-        uniforms.set("stepDepth", static_cast<float>(look.step));
+        uniforms.set("stepsPerDepth", static_cast<float>(1.0 / look.step));
         uniforms.set("maximumSteps", static_cast<float>(look.maximumSteps));
         if (look.features.layerDepth) uniforms.set("inFrontOfLayer", look.inFrontOfLayer ? 1 : 0);
         if (look.features.ranked) uniforms.set("rank", look.rank);
@@ -121,8 +124,6 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
         state.applyTextureAttribute(UNIT_SORTED_NEAR, resources.capture.colors.get());
         uniforms.set("surfaceWeights", look.surfaceWeights);
     }
-    uniforms.set("depthTextureScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
-                                                1.0f / static_cast<float>(buffers.height)));
     uniforms.set("clipZOrigin", glm::vec3(rays.clipZOrigin));
     uniforms.set("clipZDirection", glm::vec3(rays.clipZDirection));
     uniforms.set("clipWOrigin", glm::vec3(rays.clipWOrigin));
@@ -139,10 +140,12 @@ public:
     {
         state.lazyDisablingOfVertexAttributes();
         state.applyDisablingOfVertexAttributes();
-        resources.vertices.stream(gl, GL_ARRAY_BUFFER_ARB, mesh.vertices.data(),
-                                  mesh.vertices.size() * sizeof(float));
-        resources.indices.stream(gl, GL_ELEMENT_ARRAY_BUFFER_ARB, mesh.indices.data(),
-                                 mesh.indices.size() * sizeof(unsigned));
+        const std::vector<float>& vertices = mesh.vertexArray();
+        const std::vector<unsigned>& indices = mesh.indexArray();
+        resources.vertices.stream(gl, GL_ARRAY_BUFFER_ARB, vertices.data(),
+                                  vertices.size() * sizeof(float));
+        resources.indices.stream(gl, GL_ELEMENT_ARRAY_BUFFER_ARB, indices.data(),
+                                 indices.size() * sizeof(unsigned));
         enable(ATTRIBUTE_POSITION, 3, mesh.positionOffset, mesh.stride);
         if (mesh.slabOffset >= 0) enable(ATTRIBUTE_SLAB, 2, mesh.slabOffset, mesh.stride);
         if (mesh.voxelCoordinateOffset >= 0)
@@ -181,21 +184,36 @@ private:
     bool _enabled[ATTRIBUTE_COUNT] = {};
 };
 
-void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms, const BrickBatch& batch)
+void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms,
+               const ProgramFeatures& features, const BrickBatch& batch)
 {
     osg::State& state = *renderInfo.getState();
     if (batch.texture) {
-        if (!batch.texture->getTextureObject(state.getContextID())) {
+        const CoarseTexture voxels =
+            fittingTexture(*batch.texture, contextResources(state)->limits.texture3DSize);
+        if (!voxels.texture->getTextureObject(state.getContextID())) {
             count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
                   "osgVolumizer bricks uploaded", 1.0);
             count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
                   "osgVolumizer bytes uploaded", static_cast<double>(batch.textureBytes));
-            chooseFormat(state, *batch.texture);
+            chooseFormat(state, *voxels.texture);
         }
-        state.applyTextureAttribute(UNIT_VOXELS, batch.texture.get());
-        uniforms.set("textureScale", batch.textureScale);
-        uniforms.set("textureOffset", batch.textureOffset);
+        state.applyTextureAttribute(UNIT_VOXELS, voxels.texture.get());
+        uniforms.set("textureScale", batch.textureScale * voxels.scale);
+        uniforms.set("textureOffset", batch.textureOffset * voxels.scale + voxels.offset);
     }
+    if (features.skipping) {
+        const bool known = batch.cells && batch.cells->texture;
+        state.applyTextureAttribute(UNIT_CELLS,
+                                    known ? batch.cells->texture.get() : occupiedEverywhere());
+        uniforms.set("cellOrigin", known ? batch.cells->origin : glm::vec3(0.0f));
+        uniforms.set("cellSize", known ? batch.cells->cellSize : 1e6f);
+    }
+    if (features.preIntegrated) {
+        uniforms.set("brickMin", batch.brickMin);
+        uniforms.set("brickMax", batch.brickMax);
+    }
+    uniforms.set("homogeneous", batch.cells && batch.cells->homogeneous ? 1 : 0);
     uniforms.set("clipMin", batch.clipMin);
     uniforms.set("clipMax", batch.clipMax);
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.indexCount), GL_UNSIGNED_INT,
@@ -215,8 +233,11 @@ VolumeDrawable::VolumeDrawable()
 void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     osg::State& state = *renderInfo.getState();
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    const Status supported = resources->limits.check();
+    reportOnce(supported);
     const auto* program = state.getLastAppliedProgramObject();
-    if (!_mesh || !_look || _mesh->batches.empty() || !program) return;
+    if (!supported || !_mesh || !_look || _mesh->batches.empty() || !program) return;
     const glm::dmat4 toEye = toGlm(state.getModelViewMatrix());
     const glm::dmat4 projection = toGlm(state.getProjectionMatrix());
     const Result<PixelRays> rays =
@@ -226,13 +247,11 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
         return;
     }
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const std::shared_ptr<ContextResources> resources = contextResources(state);
     const Uniforms uniforms(gl, *program);
     uniforms.set("frameToClip", projection * toEye);
     setLook(uniforms, *_look, *rays);
     if (_look->features.shading) setShading(uniforms, *_look, *rays, toEye, state);
-    if (_look->features.opaqueDepth)
-        setDepthTextures(state, uniforms, *rays, *_look, *resources);
+    if (_look->features.opaqueDepth) setDepthTextures(state, uniforms, *rays, *_look, *resources);
     if (_look->table.texture) state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
     setPaints(state, uniforms, _look->paints, UNIT_FIRST_PAINT);
     // Gathered values hide nothing, so they need no order, and no parts.
@@ -243,7 +262,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
         const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
         const auto drawBatches = [&]() {
             for (const BrickBatch& batch : _mesh->batches)
-                drawBatch(renderInfo, uniforms, batch);
+                drawBatch(renderInfo, uniforms, _look->features, batch);
         };
         if (_look->scissors.empty()) {
             drawBatches();
@@ -258,7 +277,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
           static_cast<double>(_mesh->batches.size()));
     // OSG compares attributes by address: make it bind its own again whatever ours were.
     for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH, UNIT_LAYER_DEPTH,
-                          UNIT_SORTED_FAR, UNIT_SORTED_NEAR})
+                          UNIT_SORTED_FAR, UNIT_SORTED_NEAR, UNIT_CELLS})
         state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }
 

@@ -45,7 +45,7 @@ public:
     /// OSG's.
     /// 2: VolumeAppearance has Lookup and ExactFiltering.
     /// 3: VolumeAppearance has ray functions, shading, and what its accuracy and time are to be.
-    static constexpr int version = 3;
+    static constexpr int version = 4;
 
     const std::vector<Field>& fields() const { return _fields; }
     void add(std::string name, Field::Value value, std::size_t valuesPerLine = 8)

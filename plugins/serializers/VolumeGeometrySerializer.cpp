@@ -50,6 +50,9 @@ Status apply(Record& record, VolumeGeometry& geometry)
                                                     std::to_string(format.stride()) +
                                                     " of a vertex");
     status = set.validate();
+    Field::Doubles slackAngle{0.0}; // since version 4, and only where it is not 0
+    if (status.ok() && record.has("SlackAngle")) status = record.get("SlackAngle", 1, slackAngle);
+    if (status.ok()) status = geometry.setSlackAngle(slackAngle[0]);
     return status.ok() ? geometry.setTetraSet(std::move(set)) : status;
 }
 
@@ -79,6 +82,8 @@ bool writeTetraSet(osgDB::OutputStream& os, const VolumeGeometry& geometry)
                    Field::Integers{format.voxelCoordinateSize, format.colorSize, format.userSize});
     record.add("Vertices", set->vertices.values(), std::size_t(format.stride()));
     record.add("Tetrahedra", Field::Indices(set->indices), 4);
+    if (geometry.getSlackAngle() != 0.0)
+        record.add("SlackAngle", Field::Doubles{geometry.getSlackAngle()});
     writeRecord(os, record);
     return true;
 }

@@ -2,8 +2,10 @@
 
 #include "TestGeometry.h"
 #include "osgVolumizer/core/Parallel.h"
+#include "osgVolumizer/core/geometry/Orientation.h"
 #include "osgVolumizer/core/geometry/Solids.h"
 #include "osgVolumizer/core/geometry/TetraMesh.h"
+#include "osgVolumizer/core/sampling/Sample.h"
 
 #include <gtest/gtest.h>
 
@@ -103,9 +105,10 @@ void expectSound(const PolygonizedFaces& out)
         ASSERT_TRUE(std::isfinite(v));
 }
 
-/// In every surface, over all bricks, each edge is matched by its opposite, except on the hull [0,
-/// size]: nothing missing, nothing double, no crack, one orientation.
-void expectWatertight(const PolygonizedFaces& out, const glm::dvec3& size)
+/// In every surface, over all bricks, each edge is matched by its opposite, except on the hull
+/// [low, low + size]: nothing missing, nothing double, no crack, one orientation.
+void expectWatertight(const PolygonizedFaces& out, const glm::dvec3& size,
+                      const glm::dvec3& low = glm::dvec3(0.0))
 {
     for (int s = 0; s < out.surfaceCount; ++s) {
         std::map<std::pair<Bits, Bits>, int> edges;
@@ -128,8 +131,8 @@ void expectWatertight(const PolygonizedFaces& out, const glm::dvec3& size)
             bool onHull = false;
             for (std::size_t a = 0; a < 3; ++a)
                 onHull = onHull || (edge.first[a] == edge.second[a] &&
-                                    (valueOf(edge.first[a]) == 0.0f ||
-                                     valueOf(edge.first[a]) == float(size[int(a)])));
+                                    (valueOf(edge.first[a]) == float(low[int(a)]) ||
+                                     valueOf(edge.first[a]) == float((low + size)[int(a)])));
             ASSERT_TRUE(onHull) << "surface " << s << ": " << valueOf(edge.first[0]) << " "
                                 << valueOf(edge.first[1]) << " " << valueOf(edge.first[2]) << " to "
                                 << valueOf(edge.second[0]) << " " << valueOf(edge.second[1]) << " "
@@ -347,6 +350,161 @@ TEST(PolygonizeProperty, NastyTetrahedraAreHarmless)
         ASSERT_TRUE(s.ok()) << s.text;
         ASSERT_LE(out.surfaceCount, 64);
         expectSound(out);
+    }
+}
+
+/// [-2, 2]^3 in eight mirrored cubes of six tetrahedra about the diagonal (Kuhn), each of which is
+/// split at a point so near the origin that three of its four parts have a volume of 1e-18 of their
+/// box.
+TetraSet sliversAboutTheOrigin(std::mt19937& random)
+{
+    std::uniform_real_distribution<double> u(0.5, 1.0);
+    TetraSet set;
+    std::map<std::array<double, 3>, TetraSet::Index> known;
+    const auto vertex = [&](const glm::dvec3& p) {
+        const auto [at, added] =
+            known.insert({{p.x + 0.0, p.y + 0.0, p.z + 0.0}, TetraSet::Index(known.size())});
+        if (added) set.vertices.values().insert(set.vertices.values().end(), {p.x, p.y, p.z});
+        return at->second;
+    };
+    for (int octant = 0; octant < 8; ++octant) {
+        const glm::dvec3 sign(octant & 1 ? -1 : 1, octant & 2 ? -1 : 1, octant & 4 ? -1 : 1);
+        std::array<int, 3> axes{0, 1, 2};
+        do {
+            glm::dvec3 corner[4] = {}, inside(0.0);
+            for (int k = 0; k < 3; ++k) {
+                corner[k + 1] = corner[k];
+                corner[k + 1][axes[std::size_t(k)]] = 2.0;
+                inside[axes[std::size_t(k)]] = (3 - k) * u(random) * 1e-18;
+            }
+            // x > y > z > 0 in the order of the axes: inside.
+            if (inside[axes[1]] >= inside[axes[0]]) std::swap(inside[axes[0]], inside[axes[1]]);
+            inside[axes[2]] = std::min(inside[axes[2]], 0.5 * inside[axes[1]]);
+            for (int without = 0; without < 4; ++without)
+                for (int k = 0; k < 4; ++k)
+                    set.indices.push_back(vertex(sign * (k == without ? inside : corner[k])));
+        } while (std::next_permutation(axes.begin(), axes.end()));
+    }
+    return set;
+}
+
+TEST(PolygonizeProperty, SliversNeitherTearNorOverlap)
+{
+    std::mt19937 random(11);
+    for (int round = 0; round < 40; ++round) {
+        const TetraSet set = sliversAboutTheOrigin(random);
+        SamplingParameters p;
+        p.periodVoxel = glm::dvec3(round % 2 ? 0.37 : 4.0 / (1 + 2 * (round % 5)));
+        // Along axes and diagonals with an odd number of layers, planes go right through them.
+        View view = randomView(random, glm::dvec3(1.0));
+        if (round % 4 == 0) view = viewAlong({0, 0, 1});
+        if (round % 4 == 2) view = viewAlong({1, round % 8 == 2 ? 0 : 1, 1});
+        PolygonizedFaces out;
+        ASSERT_TRUE(polygonize(set, {}, view, p, out).ok());
+        expectSound(out);
+        expectWatertight(out, glm::dvec3(4.0), glm::dvec3(-2.0));
+        PolygonizedFaces box;
+        ASSERT_TRUE(polygonize(makeBox(glm::dvec3(-2.0), glm::dvec3(2.0)), {}, view, p, box).ok());
+        ASSERT_EQ(out.surfaceCount, box.surfaceCount);
+        for (int s = 0; s < out.surfaceCount; ++s)
+            EXPECT_NEAR(area(out.faces, out.range(s, 0)), area(box.faces, box.range(s, 0)), 1e-5);
+    }
+}
+
+TEST(PolygonizeProperty, SliversAnywhereHaveTheOrientationOfTheirNeighbours)
+{
+    // Cells whose tetrahedra are split at points next to a face: as near as rounding lets them be,
+    // and on the inner side, in exact arithmetic. The rounded determinant of such a sliver has
+    // either sign.
+    std::mt19937 random(13);
+    std::uniform_real_distribution<double> u(0.1, 1.0);
+    for (int round = 0; round < 30; ++round) {
+        const TetraSet coarse = jitteredGrid(3, random, 0.16);
+        TetraSet set;
+        set.vertices = coarse.vertices;
+        std::size_t slivers = 0;
+        for (std::size_t t = 0; t < coarse.tetraCount(); ++t) {
+            const TetraSet::Index* v = &coarse.indices[4 * t];
+            glm::dvec3 p[4];
+            for (int k = 0; k < 4; ++k)
+                p[k] = coarse.vertices.position(v[k]);
+            const double a = u(random), b = u(random), c = u(random);
+            const glm::dvec3 inside =
+                (a * p[0] + b * p[1] + c * p[2]) / (a + b + c) + 1e-16 * (p[3] - p[0]);
+            const int sign = orientationSign(p[0], p[1], p[2], p[3]);
+            bool within = true;
+            for (int k = 0; k < 4; ++k) {
+                glm::dvec3 q[4] = {p[0], p[1], p[2], p[3]};
+                q[k] = inside;
+                within = within && orientationSign(q[0], q[1], q[2], q[3]) == sign;
+            }
+            if (!within) {
+                set.indices.insert(set.indices.end(), v, v + 4);
+                continue;
+            }
+            ++slivers;
+            const auto middle = static_cast<TetraSet::Index>(set.vertices.size());
+            set.vertices.values().insert(set.vertices.values().end(),
+                                         {inside.x, inside.y, inside.z});
+            for (int k = 0; k < 4; ++k)
+                for (int i = 0; i < 4; ++i)
+                    set.indices.push_back(i == k ? middle : v[i]);
+        }
+        EXPECT_GT(slivers, 10u);
+        SamplingParameters p;
+        p.periodVoxel = glm::dvec3(0.03);
+        PolygonizedFaces out;
+        ASSERT_TRUE(polygonize(set, {}, randomView(random, glm::dvec3(1.0)), p, out).ok());
+        expectSound(out);
+        expectWatertight(out, glm::dvec3(3.0));
+    }
+}
+
+TEST(PolygonizeProperty, AreasOfSliversAddUpInDoublePrecision)
+{
+    /// Planes across a direction.
+    struct Planes : SurfaceFamily
+    {
+        glm::dvec3 normal;
+        double depth(const glm::dvec3& p, const glm::dvec3&) const override
+        {
+            return glm::dot(normal, p);
+        }
+        double spacing() const override { return 1.0; }
+    };
+    std::mt19937 random(12);
+    std::uniform_real_distribution<double> u(-1.0, 1.0);
+    for (int round = 0; round < 40; ++round) {
+        const TetraSet set = sliversAboutTheOrigin(random);
+        const TetraSet box = makeBox(glm::dvec3(-2.0), glm::dvec3(2.0));
+        Planes planes;
+        planes.normal = glm::normalize(glm::dvec3(u(random), u(random), u(random)));
+        for (const double depth : {0.0, 1e-18, -3e-19, 0.3, -1.1}) {
+            PolygonSet cut, expected;
+            for (std::size_t t = 0; t < set.tetraCount(); ++t)
+                ASSERT_TRUE(sample(set, t, planes, {depth}, cut).ok());
+            for (std::size_t t = 0; t < box.tetraCount(); ++t)
+                ASSERT_TRUE(sample(box, t, planes, {depth}, expected).ok());
+            EXPECT_NEAR(cut.area(), expected.area(), 1e-12 * expected.area());
+        }
+    }
+}
+
+TEST(PolygonizeProperty, AnyNumberOfSurfacesInOneTetrahedron)
+{
+    // More than the lists of a block can number: the general way takes over.
+    SamplingParameters p;
+    p.periodVoxel = glm::dvec3(1e-9);
+    for (const int count : {255, 256, 257, 65535, 65536, 70001}) {
+        p.maximumSamples = count;
+        PolygonizedFaces out;
+        const TetraSet box = makeBox(glm::dvec3(0.0), glm::dvec3(4.0));
+        ASSERT_TRUE(polygonize(box, {}, viewAlong({0, 0, 1}), p, out).ok());
+        ASSERT_EQ(out.surfaceCount, count);
+        expectSound(out);
+        for (int s = 0; s < count; s += count / 50)
+            EXPECT_NEAR(area(out.faces, out.range(s, 0)), 16.0, 1e-5);
+        if (count < 1000) expectWatertight(out, glm::dvec3(4.0));
     }
 }
 

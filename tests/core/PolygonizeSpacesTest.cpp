@@ -152,6 +152,41 @@ TEST(PolygonizeSpaces, PrimitiveGivesEveryTetrahedronItsOwnLayers)
     EXPECT_EQ(out.faces.faceCount(), 40u);
 }
 
+TEST(PolygonizeSpaces, PiecesOfATetrahedronShareItsLayers)
+{
+    // Spheres: tetrahedra are refined, but each counts as one for PRIMITIVE. Its faces then are a
+    // midpoint rule for its volume, of second order, however many pieces it has.
+    SamplingParameters p;
+    p.space = SamplingSpace::PRIMITIVE;
+    p.mode = SamplingMode::SPHERICAL;
+    p.curvedTolerance = 0.002;
+    View view;
+    view.toEye = glm::lookAt(glm::dvec3(-1, -2, -3), glm::dvec3(2, 2, 2), glm::dvec3(0, 0, 1));
+    view.projection = glm::perspective(1.0, 1.0, 0.1, 100.0);
+    TetraSet one;
+    one.vertices.resize(4);
+    one.vertices.setPosition(0, {0, 0, 0});
+    one.vertices.setPosition(1, {6, 1, 0});
+    one.vertices.setPosition(2, {1, 6, 1});
+    one.vertices.setPosition(3, {0, 1, 6});
+    one.indices = {0, 1, 2, 3};
+    const double volume = glm::determinant(glm::dmat3(6, 1, 0, 1, 6, 1, 0, 1, 6)) / 6.0;
+    double errors[3];
+    for (int i = 0; i < 3; ++i) {
+        p.periodVoxel = glm::dvec3(1.0 / (1 << i));
+        PolygonizedFaces out;
+        ASSERT_TRUE(polygonize(one, {}, view, p, out).ok());
+        double sum = 0.0;
+        for (std::uint32_t f = 0; f < out.faces.faceCount(); ++f) {
+            EXPECT_EQ(out.faceSpacings[f], out.faceSpacings[0]);
+            sum += out.faceSpacings[f] * area(out.faces, {f, 1, out.faces.faceOffsets[f], 0});
+        }
+        errors[i] = std::abs(sum - volume);
+    }
+    EXPECT_GE(std::log2(errors[0] / errors[2]) / 2.0, 1.8)
+        << errors[0] << " " << errors[1] << " " << errors[2];
+}
+
 TEST(PolygonizeSpaces, AxisAlignedPlanesAreVoxelPlanesAlsoInBentTetrahedra)
 {
     TetraSet set = makeGrid(3, 6.0, VertexFormat(VertexLayout::T3F_V3F));

@@ -108,3 +108,32 @@ TEST(ViewHelpers, ProjectedAreaOfASquareAndOfOneAroundTheEye)
     EXPECT_TRUE(std::isfinite(*projectedArea(faces, v)));
     EXPECT_GT(*projectedArea(faces, v), 0.5);
 }
+
+TEST(ViewHelpers, LastRowMayBeOffByRounding)
+{
+    View v;
+    v.toEye = glm::lookAt(glm::dvec3(300, -200, 100), glm::dvec3(0.0), glm::dvec3(0, 0, 1));
+    v.projection = glm::perspective(1.0, 1.0, 1.0, 1000.0);
+    const glm::dmat4 exact = *fromEye(v);
+    v.toEye[0][3] = 1e-16;
+    v.toEye[2][3] = -1e-16;
+    v.toEye[3][3] = std::nextafter(1.0, 2.0);
+    const Result<glm::dmat4> inverse = fromEye(v);
+    ASSERT_TRUE(inverse.ok());
+    EXPECT_EQ(*inverse, exact);
+    EXPECT_TRUE(eyePosition(v).ok());
+    // Inverted twice, as scene graphs do.
+    v.toEye = glm::inverse(glm::inverse(v.toEye));
+    EXPECT_TRUE(fromEye(v).ok());
+    // In proportion to the model's scale.
+    v.toEye = glm::scale(glm::dmat4(1.0), glm::dvec3(1e-8));
+    v.toEye[1][3] = 1e-24;
+    EXPECT_TRUE(fromEye(v).ok());
+    v.toEye[1][3] = 1e-20;
+    EXPECT_FALSE(fromEye(v).ok());
+    v.toEye[1][3] = std::nan("");
+    EXPECT_FALSE(fromEye(v).ok());
+    v = View();
+    v.toEye[3][3] = 1.001;
+    EXPECT_FALSE(fromEye(v).ok());
+}

@@ -89,12 +89,14 @@ TEST_P(SerializerTest, TetraSetsKeepEveryBitInEveryLayout)
         geometry->setName("a \"name\" \\ with blanks");
         geometry->setNodeMask(0xf0f);
         ASSERT_TRUE(geometry->setTetraSet(set).ok());
+        ASSERT_TRUE(geometry->setSlackAngle(0.1 * format.stride()));
         const auto copy = roundTrip(*geometry);
         ASSERT_TRUE(copy);
         EXPECT_EQ(copy->getTetraSet()->vertices.format().layout, format.layout);
         EXPECT_TRUE(copy->getTetraSet()->vertices.format() == format);
         EXPECT_TRUE(sameBits(copy->getTetraSet()->vertices.values(), set.vertices.values()));
         EXPECT_EQ(copy->getTetraSet()->indices, set.indices);
+        EXPECT_EQ(copy->getSlackAngle(), geometry->getSlackAngle());
         EXPECT_EQ(copy->getName(), geometry->getName());
         EXPECT_EQ(copy->getNodeMask(), geometry->getNodeMask());
     }
@@ -188,7 +190,7 @@ TEST_P(SerializerTest, OlderVersionsKeepDefaults)
     a->setShading(true);
     std::string content = write(*a);
     const std::size_t version =
-        content.find("1 3", content.find("Version", content.find("Sampling")));
+        content.find("1 4", content.find("Version", content.find("Sampling")));
     ASSERT_NE(version, std::string::npos);
     content[version + 2] = '2';
     const auto read = SerializerTest::read(content);

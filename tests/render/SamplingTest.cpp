@@ -73,13 +73,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Family{SamplingMode::AXIS_ALIGNED, SamplingSpace::OBJECT},
                       Family{SamplingMode::AXIS_ALIGNED, SamplingSpace::PRIMITIVE},
                       Family{SamplingMode::SPHERICAL, SamplingSpace::VIEW_VOLUME},
-                      Family{SamplingMode::SPHERICAL, SamplingSpace::OBJECT}),
+                      Family{SamplingMode::SPHERICAL, SamplingSpace::OBJECT},
+                      Family{SamplingMode::SPHERICAL, SamplingSpace::PRIMITIVE}),
     familyName);
-// Each piece that a tetrahedron is refined into has layers of its own: order 0.7.
-INSTANTIATE_TEST_SUITE_P(DISABLED_Families, Sampling,
-                         ::testing::Values(Family{SamplingMode::SPHERICAL,
-                                                  SamplingSpace::PRIMITIVE}),
-                         familyName);
 
 class Periods : public support::GLTest,
                 public ::testing::WithParamInterface<VolumeAppearance::Technique>

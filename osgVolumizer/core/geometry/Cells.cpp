@@ -1,67 +1,17 @@
+#include "CellSplitting.h"
 #include "Solids.h"
 
-#include <algorithm>
 #include <string>
 
 namespace osgVolumizer {
 namespace core {
-
-namespace {
-
-/// Faces of a cell, seen counter-clockwise from outside where the cell is oriented as its kind says
-/// (det(1 - 0, 2 - 0, next ring - 0) > 0); -1 ends a triangle.
-struct CellFaces
-{
-    int vertices, faces;
-    int corner[6][4];
-};
-
-constexpr CellFaces CELLS[4] = {
-    {4, 4, {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {2, 0, 3, -1}, {}, {}}},
-    {5, 5, {{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}, {}}},
-    {6, 5, {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}, {}}},
-    {8, 6, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}}};
-
-void addTetra(TetraSet& set, TetraSet::Index apex, TetraSet::Index a, TetraSet::Index b,
-              TetraSet::Index c)
-{
-    // The face is seen counter-clockwise from outside, so the apex is on the inside: (a, c, b,
-    // apex) is positive.
-    set.indices.insert(set.indices.end(), {a, c, b, apex});
-}
-
-void addCell(TetraSet& set, const CellFaces& cell, const TetraSet::Index* v)
-{
-    const TetraSet::Index apex = *std::min_element(v, v + cell.vertices);
-    for (int f = 0; f < cell.faces; ++f) {
-        const int n = cell.corner[f][3] < 0 ? 3 : 4;
-        TetraSet::Index corner[4] = {};
-        int lowest = 0;
-        for (int i = 0; i < n; ++i) {
-            corner[i] = v[cell.corner[f][i]];
-            if (corner[i] < corner[lowest]) lowest = i;
-        }
-        if (corner[lowest] == apex) continue; // the apex lies in it
-        for (int i = 1; i + 1 < n; ++i)
-            addTetra(set, apex, corner[lowest], corner[(lowest + i) % n],
-                     corner[(lowest + i + 1) % n]);
-    }
-}
-
-} // namespace
-
-int cellSize(CellKind kind)
-{
-    return CELLS[static_cast<int>(kind)].vertices;
-}
 
 Result<TetraSet> CellSet::tessellate() const
 {
     if (kind < CellKind::TETRA || kind > CellKind::HEXA)
         return Status(ErrorCode::VALUE_INVALID,
                       "CellSet: kind " + std::to_string(static_cast<int>(kind)) + " is unknown.");
-    const CellFaces& cell = CELLS[static_cast<int>(kind)];
-    const auto size = static_cast<std::size_t>(cell.vertices);
+    const auto size = static_cast<std::size_t>(cellSize(kind));
     if (indices.size() % size != 0)
         return Status(ErrorCode::SIZE_MISMATCH, "CellSet: " + std::to_string(indices.size()) +
                                                     " indices are no multiple of " +
@@ -77,7 +27,7 @@ Result<TetraSet> CellSet::tessellate() const
     TetraSet set;
     set.vertices = vertices;
     for (std::size_t i = 0; i < indices.size(); i += size)
-        addCell(set, cell, indices.data() + i);
+        splitCell(kind, indices.data() + i, set.indices);
     if (Status s = set.validate(); !s) return s;
     return set;
 }

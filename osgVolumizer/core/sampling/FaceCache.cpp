@@ -74,6 +74,7 @@ struct FaceCache::Private
         Box3d bounds;
         Made made;
         std::vector<std::shared_ptr<PolygonizedFaces>> pool;
+        std::uint64_t lastCall = 0; ///< guarded by the map's mutex
 
         bool reusable(const std::shared_ptr<const TetraSet>& set, const std::vector<Box3d>& boxes,
                       const View& view, const SamplingParameters& parameters, double slack) const;
@@ -82,12 +83,19 @@ struct FaceCache::Private
                     const View& view, const SamplingParameters& parameters);
     };
 
+    std::shared_ptr<Entry> entryOf(ViewId viewId);
+
+    std::size_t capacity;
     mutable std::mutex mutex; ///< guards the map only
     std::unordered_map<ViewId, std::shared_ptr<Entry>> entries;
+    std::uint64_t calls = 0;
     std::atomic<std::uint64_t> polygonizations{0}, reuses{0};
 };
 
-FaceCache::FaceCache() : _private(new Private) {}
+FaceCache::FaceCache(std::size_t capacity) : _private(new Private)
+{
+    _private->capacity = capacity;
+}
 FaceCache::~FaceCache() = default;
 
 bool FaceCache::Private::Entry::reusable(const std::shared_ptr<const TetraSet>& set,
@@ -149,22 +157,32 @@ Status FaceCache::Private::Entry::make(const std::shared_ptr<const TetraSet>& se
     return {};
 }
 
+std::shared_ptr<FaceCache::Private::Entry> FaceCache::Private::entryOf(ViewId viewId)
+{
+    const std::lock_guard<std::mutex> lock(mutex);
+    const auto found = entries.find(viewId);
+    if (found == entries.end() && entries.size() >= capacity)
+        entries.erase(
+            std::min_element(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+                return a.second->lastCall < b.second->lastCall;
+            }));
+    std::shared_ptr<Entry>& slot = entries[viewId];
+    if (!slot) slot = std::make_shared<Entry>();
+    slot->lastCall = ++calls;
+    return slot;
+}
+
 Result<FaceCache::FacesPtr> FaceCache::faces(ViewId viewId,
                                              const std::shared_ptr<const TetraSet>& tetraSet,
                                              const std::vector<Box3d>& clipBoxes, const View& view,
                                              const SamplingParameters& parameters,
-                                             double slackAngle)
+                                             double slackAngle, bool* polygonized)
 {
+    if (polygonized) *polygonized = false;
     if (!(slackAngle >= 0.0))
         return Status(ErrorCode::VALUE_INVALID,
                       "FaceCache: the slack angle is " + std::to_string(slackAngle) + ".");
-    std::shared_ptr<Private::Entry> entry;
-    {
-        const std::lock_guard<std::mutex> lock(_private->mutex);
-        std::shared_ptr<Private::Entry>& slot = _private->entries[viewId];
-        if (!slot) slot = std::make_shared<Private::Entry>();
-        entry = slot;
-    }
+    const std::shared_ptr<Private::Entry> entry = _private->entryOf(viewId);
     const std::lock_guard<std::mutex> lock(entry->mutex);
     if (entry->reusable(tetraSet, clipBoxes, view, parameters, slackAngle)) {
         ++_private->reuses;
@@ -172,6 +190,7 @@ Result<FaceCache::FacesPtr> FaceCache::faces(ViewId viewId,
     }
     if (Status s = entry->make(tetraSet, clipBoxes, view, parameters); !s) return s;
     ++_private->polygonizations;
+    if (polygonized) *polygonized = true;
     return entry->made.faces;
 }
 

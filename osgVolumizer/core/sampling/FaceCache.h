@@ -29,17 +29,21 @@ public:
     using FacesPtr = std::shared_ptr<const PolygonizedFaces>;
     using ViewId = std::uint64_t;
 
-    FaceCache();
+    /// \param capacity of how many views faces are kept, > 0; the one that has not been asked for
+    /// longest is forgotten first
+    explicit FaceCache(std::size_t capacity = 16);
     ~FaceCache();
 
     /// \param viewId whatever identifies the view and the place in the graph
     /// \param tetraSet never null; immutable, so that the same pointer means the same tetrahedra
     /// \param slackAngle radians, >= 0
+    /// \param polygonized tells whether this call did, unless null
     /// The faces stay as they are for as long as the pointer is held; their memory is used again
     /// for later frames when it is not.
     Result<FacesPtr> faces(ViewId viewId, const std::shared_ptr<const TetraSet>& tetraSet,
                            const std::vector<Box3d>& clipBoxes, const View& view,
-                           const SamplingParameters& parameters, double slackAngle = 0.0);
+                           const SamplingParameters& parameters, double slackAngle = 0.0,
+                           bool* polygonized = nullptr);
 
     /// Forgets a view, or all.
     void forget(ViewId viewId);

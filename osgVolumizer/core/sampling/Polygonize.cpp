@@ -160,6 +160,25 @@ Status Polygonizer::Private::useFunction(const Refiner::Function& depth, double 
     return {};
 }
 
+void Polygonizer::Private::spreadOverParents()
+{
+    constexpr double INFINITE = std::numeric_limits<double>::infinity();
+    const std::vector<std::uint32_t>& parents = refiner.parents();
+    parentRanges.assign(tetraSet->tetraCount(), {INFINITE, -INFINITE});
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+        DepthRange& range = parentRanges[parents[i]];
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double d = depths[refined.indices[4 * i + k]];
+            range.nearest = std::min(range.nearest, d);
+            range.farthest = std::max(range.farthest, d);
+        }
+    }
+    primitiveRanges.resize(parents.size());
+    for (std::size_t i = 0; i < parents.size(); ++i)
+        primitiveRanges[i] = parentRanges[parents[i]];
+    plan.primitiveRanges = primitiveRanges.data();
+}
+
 Status Polygonizer::Private::measure()
 {
     const TetraBlocks& b = *plan.blocks;
@@ -257,6 +276,8 @@ Status Polygonizer::polygonize(const View& view, const SamplingParameters& param
             return s;
     }
     p.plan.primitive = parameters.space == SamplingSpace::PRIMITIVE;
+    p.plan.primitiveRanges = nullptr;
+    if (p.plan.primitive && !family->linear()) p.spreadOverParents();
     p.plan.visible.clear();
     if (parameters.cullToView) visibleHalfSpaces(view, parameters.outputOrigin, p.plan.visible);
     if (Status s = p.measure(); !s) return s;
@@ -269,6 +290,7 @@ Status Polygonizer::polygonize(const View& view, const SamplingParameters& param
     for (double& d : out.surfaceDepths)
         d = sign * (d + family->anchorDepth);
     out.axis = family->axis;
+    out.gradient = family->linear() ? family->gradient : glm::dvec3(0.0);
     return {};
 }
 
@@ -296,6 +318,7 @@ Status Polygonizer::polygonize(const SurfaceFamily& family, const SamplingParame
         !s)
         return s;
     out.axis = -1;
+    out.gradient = glm::dvec3(0.0);
     return {};
 }
 

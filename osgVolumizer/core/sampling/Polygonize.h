@@ -46,6 +46,9 @@ struct PolygonizedFaces
     std::vector<float> faceSpacings;
     /// AXIS_ALIGNED: 0, 1 or 2; else -1.
     int axis = -1;
+    /// Planes: how depth grows with position (AXIS_ALIGNED: with voxel coordinates), so also their
+    /// normal; zero for curved surfaces.
+    glm::dvec3 gradient{0.0};
 
     const FaceRange& range(int surface, int brick) const
     {

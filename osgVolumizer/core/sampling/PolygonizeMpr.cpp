@@ -39,6 +39,7 @@ Status Polygonizer::Private::cutPlane(const Plane& plane, const glm::dvec3& orig
     plan.pieces = nullptr;
     if (!s) return s;
     out.axis = -1;
+    out.gradient = plan.gradient;
     out.spacing = 0.0;
     return {};
 }

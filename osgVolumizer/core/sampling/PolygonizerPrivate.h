@@ -27,6 +27,7 @@ struct Polygonizer::Private
     Refiner refiner;
     TetraSet refined;
     std::vector<double> depths; // per vertex, where they are not those of planes
+    std::vector<DepthRange> parentRanges, primitiveRanges; // per tetrahedron, refined or not
     std::vector<double> surfaceDepths;
     std::vector<int> order; // surfaces, far to near
     SlicePlan plan;
@@ -36,6 +37,8 @@ struct Polygonizer::Private
     Status prepareBlocks(const glm::dvec3& origin);
     void usePlanes(const ViewFamily& family, const glm::dvec3& origin);
     Status useFunction(const Refiner::Function& depth, double tolerance, const glm::dvec3& origin);
+    /// PRIMITIVE: gives the pieces of a refined tetrahedron the layers of the whole.
+    void spreadOverParents();
     Status measure();
     Status cut(const SurfaceLattice& lattice, double eyeDepth, PolygonizedFaces& out);
     Status cutPlane(const Plane& plane, const glm::dvec3& origin,

@@ -75,6 +75,7 @@ Status Refiner::refine(const TetraSet& in, const Box3d& bounds, const Function& 
     _tolerance = tolerance;
     _shortestSquared = glm::dot(bounds.size(), bounds.size()) * SHORTEST_EDGE * SHORTEST_EDGE;
     _middles.clear();
+    _parents.clear();
     out.vertices = in.vertices;
     out.indices.clear();
     values.clear();
@@ -102,6 +103,7 @@ Status Refiner::refine(const TetraSet& in, const Box3d& bounds, const Function& 
             }
             if (split < 0) {
                 out.indices.insert(out.indices.end(), t, t + 4);
+                _parents.push_back(static_cast<std::uint32_t>(i / 4));
                 if (out.tetraCount() > in.tetraCount() + MAX_NEW_TETRAHEDRA)
                     return {ErrorCode::TOO_LARGE,
                             "polygonize: the tolerance of " + std::to_string(tolerance) +

@@ -29,6 +29,8 @@ public:
     using Function = std::function<double(const double*, const double*)>;
     Status refine(const TetraSet& in, const Box3d& bounds, const Function& value, double tolerance,
                   TetraSet& out, std::vector<double>& values);
+    /// Per tetrahedron of the last `out`: which one of `in` it is a piece of.
+    const std::vector<std::uint32_t>& parents() const { return _parents; }
 
 private:
     /// The vertex in the middle of an edge; made where the edge is to be split, else NONE.
@@ -41,6 +43,7 @@ private:
     double _shortestSquared = 0.0;
     EdgeMap _middles; ///< vertex in the middle, or UNSPLIT
     std::vector<TetraSet::Index> _stack;
+    std::vector<std::uint32_t> _parents;
 };
 
 } // namespace core

@@ -79,8 +79,8 @@ void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block, std::uint
         if (plan.primitiveRanges) {
             const DepthRange& range =
                 plan.primitiveRanges[blocks.sourceTetrahedra[block.firstTetra + tetrahedron]];
-            low = (plan.lattice.farDepth - range.farthest) / plan.lattice.spacing;
-            high = (plan.lattice.farDepth - range.nearest) / plan.lattice.spacing;
+            low = (plan.lattice.farDepth - range.farthest) * (1.0 / plan.lattice.spacing);
+            high = (plan.lattice.farDepth - range.nearest) * (1.0 / plan.lattice.spacing);
         }
         last = std::max(1, static_cast<int>(std::ceil((high - low) * (1.0 - 1e-9))));
         scale = last / (high - low);

@@ -14,6 +14,7 @@ namespace core {
 namespace {
 
 constexpr double SINGULAR = 1e-12;
+constexpr double AFFINE = 1e-14; ///< what a few roundings can do to the last row
 
 Status singular(const char* what)
 {
@@ -57,6 +58,18 @@ double largest(const glm::dvec4& v)
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z), std::abs(v.w)});
 }
 
+/// Whether the last row is (0, 0, 0, 1), as it is after matrices were multiplied and inverted: an
+/// entry counts in proportion to its column, since their ratio is a distance in the eye frame.
+bool isAffine(const glm::dmat4& m)
+{
+    const glm::dvec4 r = row(m, 3);
+    for (int c = 0; c < 3; ++c) {
+        const glm::dvec3 a = glm::abs(glm::dvec3(m[c]));
+        if (!(std::abs(r[c]) <= AFFINE * std::max({a.x, a.y, a.z}))) return false;
+    }
+    return std::abs(r.w - 1.0) <= AFFINE;
+}
+
 } // namespace
 
 bool isSingular(const glm::dmat3& m)
@@ -69,8 +82,8 @@ Result<glm::dmat4> fromEye(const View& view)
 {
     const glm::dmat3 linear(view.toEye);
     const glm::dvec4& t = view.toEye[3];
-    if (isSingular(linear) || !(row(view.toEye, 3) == glm::dvec4(0.0, 0.0, 0.0, 1.0)) ||
-        !std::isfinite(t.x) || !std::isfinite(t.y) || !std::isfinite(t.z))
+    if (isSingular(linear) || !isAffine(view.toEye) || !std::isfinite(t.x) || !std::isfinite(t.y) ||
+        !std::isfinite(t.z))
         return singular("model-view");
     const glm::dmat3 inverse = glm::inverse(linear);
     glm::dmat4 r(inverse);

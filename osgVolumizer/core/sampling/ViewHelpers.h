@@ -35,7 +35,7 @@ struct NearFar
 OSGVOLUMIZER_CORE_EXPORT bool isSingular(const glm::dmat3& m);
 
 /// The affine inverse of `toEye`; SINGULAR_MATRIX where there is none, or where the last row is not
-/// (0, 0, 0, 1).
+/// (0, 0, 0, 1) up to a few roundings (1e-14; its first three entries relative to their columns).
 OSGVOLUMIZER_CORE_EXPORT Result<glm::dmat4> fromEye(const View& view);
 
 /// Centre of projection in the position frame, homogeneous: w = 1, or w = 0 for a parallel
