@@ -80,6 +80,7 @@ void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block, std::uint
         }
         last = std::max(1, static_cast<int>(std::ceil((high - low) * (1.0 - 1e-9))));
         scale = last / (high - low);
+        if (!std::isfinite(scale)) return; // too thin for layers of its own
         first = 0;
         for (double& v : f)
             v = (v - low) * scale;
