@@ -2,10 +2,15 @@
 
 #include <osgUtil/CullVisitor>
 
+#include <atomic>
+#include <cmath>
+
 namespace osgVolumizer {
 namespace render {
 
 namespace {
+
+std::atomic<bool> skips{true};
 
 osg::BoundingBox objectBounds(const core::Box3d& box, const glm::dmat4& frameToObject)
 {
@@ -17,36 +22,90 @@ osg::BoundingBox objectBounds(const core::Box3d& box, const glm::dmat4& frameToO
     return result;
 }
 
+OccupancyQuery queryOf(const VolumeInstance& volume, const Voxels& voxels)
+{
+    const osg::Vec2d range = voxels.getRange();
+    OccupancyQuery query;
+    query.table = &volume.look->table;
+    query.cubic = volume.look->features.cubic;
+    query.isosurface = volume.look->features.rayFunction == VolumeAppearance::ISOSURFACE;
+    query.isoFraction = (volume.appearance->getIsoValue() - range.x()) / (range.y() - range.x());
+    return query;
+}
+
+// Cuts a brick down to where it shows something; false where that is nowhere.
+bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickTextures& textures,
+                   const OccupancyQuery& query, SelectedBrick& brick)
+{
+    if (voxels.getComponents() == 1) {
+        const auto values = voxels.getBrickRange(brick.index);
+        if (!(values.first <= values.second) ||
+            !showsValues(voxels, query, values.first, values.second)) {
+            ++volume.emptyBricks;
+            return false;
+        }
+    }
+    if (!volume.prepared->voxelFrame || !skips) return true;
+    brick.cells = textures.cells().get(voxels, brick.index, query);
+    if (!brick.cells) return false;
+    volume.cellSize = brick.cells->cellSize;
+    volume.cellCount += brick.cells->cellCount;
+    volume.occupiedCells += brick.cells->occupiedCount;
+    // A layer that reaches into the box from a slice outside would be lost.
+    const ProgramFeatures& features = volume.look->features;
+    if (features.slab || !features.preIntegrated)
+        brick.box = intersection(brick.box, brick.cells->box);
+    if (brick.box.empty()) {
+        ++volume.emptyBricks;
+        return false;
+    }
+    volume.homogeneousBricks += brick.cells->homogeneous;
+    return true;
+}
+
 } // namespace
 
-void selectBricks(VolumeInstance& volume, const Voxels& voxels, const TableTexture& table,
-                  osgUtil::CullVisitor& visitor)
+void setSkipping(bool on)
+{
+    skips = on;
+}
+
+bool isWorthSkipping(const VolumeInstance& volume)
+{
+    // What it costs to look for the ends of a ray's occupied part, in samples.
+    constexpr double COST = 15.0;
+    if (!volume.look->features.slab || volume.cellCount == 0) return false;
+    const double emptyShare = 1.0 - double(volume.occupiedCells) / double(volume.cellCount);
+    const double boxEdge =
+        volume.cellSize * std::cbrt(double(volume.cellCount) / double(volume.bricks.size()));
+    return emptyShare * boxEdge > COST * volume.look->voxelsPerSample;
+}
+
+void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
 {
     const core::BrickLayout& layout = voxels.getLayout();
-    const osg::Vec2d range = voxels.getRange();
-    const double toFraction = 1.0 / (range.y() - range.x());
     const osg::ref_ptr<BrickTextures> textures = BrickTextures::of(voxels);
     const PreparedGeometry& prepared = *volume.prepared;
+    const ProgramFeatures& features = volume.look->features;
+    const OccupancyQuery query = queryOf(volume, voxels);
     for (std::int64_t i = 0; i < layout.brickCount(); ++i) {
         const core::BrickPlace place = layout.brick(i);
-        core::Box3d box = place.clipBox;
-        if (prepared.voxelFrame) {
-            box = intersection(box, prepared.regionBox);
-            if (box.empty()) continue;
-            if (visitor.isCulled(objectBounds(box, prepared.frameToObject))) continue;
-        }
-        if (voxels.getComponents() == 1) {
-            const auto values = voxels.getBrickRange(i);
-            if (!(table.function->maximumOpacity((values.first - range.x()) * toFraction,
-                                                 (values.second - range.x()) * toFraction) > 0.0))
-                continue;
-        }
-        const BrickTexture texture =
-            textures->get(voxels, i, volume.look->features.gradientTexture);
-        if (!texture.texture) continue;
         const glm::vec3 size(place.samples.size());
-        volume.bricks.push_back(
-            {i, box, texture, 1.0f / size, (0.5f - glm::vec3(place.samples.min)) / size});
+        SelectedBrick brick;
+        brick.index = i;
+        brick.box = brick.clipBox = place.clipBox;
+        brick.textureScale = 1.0f / size;
+        brick.textureOffset = (0.5f - glm::vec3(place.samples.min)) / size;
+        if (prepared.voxelFrame) {
+            brick.box = intersection(brick.box, prepared.regionBox);
+            if (brick.box.empty()) continue;
+            if (visitor.isCulled(objectBounds(brick.box, prepared.frameToObject))) continue;
+        }
+        // Gathered rays count every value, shown or not.
+        if (!features.gathers() && !cutToOccupied(volume, voxels, *textures, query, brick))
+            continue;
+        brick.texture = textures->get(voxels, i, features.gradientTexture);
+        if (brick.texture.texture) volume.bricks.push_back(std::move(brick));
     }
 }
 

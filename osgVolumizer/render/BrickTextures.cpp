@@ -209,6 +209,7 @@ BrickTexture BrickTextures::get(const Voxels& voxels, std::int64_t brick, bool g
 
 void BrickTextures::resizeGLObjectBuffers(unsigned int maximum)
 {
+    _cells.resizeGLObjectBuffers(maximum);
     std::lock_guard<std::mutex> lock(_mutex);
     for (auto& entry : _entries)
         if (entry.second.brick.texture) {
@@ -219,6 +220,7 @@ void BrickTextures::resizeGLObjectBuffers(unsigned int maximum)
 
 void BrickTextures::releaseGLObjects(osg::State* state) const
 {
+    _cells.releaseGLObjects(state);
     std::lock_guard<std::mutex> lock(_mutex);
     for (const auto& entry : _entries)
         if (entry.second.brick.texture) {

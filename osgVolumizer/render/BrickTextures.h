@@ -1,5 +1,7 @@
 #pragma once
 
+#include "BrickCells.h"
+
 #include "../Voxels.h"
 
 #include <osg/Texture3D>
@@ -32,6 +34,8 @@ public:
     /// differences in red, green and blue, see gradientDecode(), and the value in alpha.
     BrickTexture get(const Voxels& voxels, std::int64_t brick, bool gradients = false);
 
+    CellCache& cells() { return _cells; }
+
     void resizeGLObjectBuffers(unsigned int maximum) override;
     void releaseGLObjects(osg::State* state) const override;
 
@@ -42,6 +46,7 @@ private:
         unsigned modifiedCount = 0, layoutCount = 0;
     };
 
+    CellCache _cells;
     mutable std::mutex _mutex;
     std::map<std::pair<std::int64_t, bool>, Entry> _entries; ///< with and without gradients
 };

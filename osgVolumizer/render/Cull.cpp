@@ -40,12 +40,28 @@ bool passesOsgCulling(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     return !(geometry.isCullingActive() && visitor.isCulled(geometry.getBoundingBox()));
 }
 
+void report(const VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
+{
+    const std::pair<const char*, std::int64_t> values[] = {
+        {"osgVolumizer bricks total", voxels.getLayout().brickCount()},
+        {"osgVolumizer bricks empty", volume.emptyBricks},
+        {"osgVolumizer bricks homogeneous", volume.homogeneousBricks},
+        {"osgVolumizer cells total", volume.cellCount},
+        {"osgVolumizer cells occupied", volume.occupiedCells}};
+    for (const auto& value : values)
+        count(visitor.getCurrentCamera(), visitor.getFrameStamp(), value.first,
+              static_cast<double>(value.second));
+}
+
 void registerVolume(std::unique_ptr<VolumeInstance> volume, osgUtil::CullVisitor& visitor)
 {
     const glm::dvec4 center(volume->look->center, 1.0);
     const float depth = static_cast<float>(volume->look->referenceDepth);
     if (std::isnan(depth)) return;
     osgUtil::CullVisitor& cv = visitor;
+    if (volume->look->features.voxels)
+        count(cv.getCurrentCamera(), cv.getFrameStamp(), "osgVolumizer voxels per sample",
+              volume->look->voxelsPerSample);
     const osg::ref_ptr<osg::StateSet> stateSet = volumeStateSet(volume->look->features);
     cv.pushStateSet(stateSet);
     volume->drawable = new VolumeDrawable;
@@ -59,6 +75,11 @@ void registerVolume(std::unique_ptr<VolumeInstance> volume, osgUtil::CullVisitor
 void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
 {
     if (!passesOsgCulling(geometry, visitor)) return;
+    if (visitor.clampedPixelSize(geometry.getBound()) < 1.0f) {
+        count(visitor.getCurrentCamera(), visitor.getFrameStamp(), "osgVolumizer volumes too small",
+              1.0);
+        return;
+    }
     const VolumeAppearance* appearance = nearestAppearance(visitor.getNodePath());
     if (!appearance) return;
     const Voxels* voxels = appearance->getVoxels();
@@ -82,11 +103,12 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     if (voxels)
         table = appearance->tableTextures().get(*appearance->getLookupTable(), voxels->getRange(),
                                                 usedLookup(*appearance, *volume->prepared));
-    volume->look = makeLook(*volume, table, visitor);
+    const std::shared_ptr<VolumeLook> look = makeLook(*volume, table, visitor);
+    volume->look = look;
     if (voxels) {
-        selectBricks(*volume, *voxels, table, visitor);
-        count(visitor.getCurrentCamera(), visitor.getFrameStamp(), "osgVolumizer bricks total",
-              static_cast<double>(voxels->getLayout().brickCount()));
+        selectBricks(*volume, *voxels, visitor);
+        look->features.skipping = isWorthSkipping(*volume);
+        report(*volume, *voxels, visitor);
         if (volume->bricks.empty()) return;
     }
     if (visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR &&

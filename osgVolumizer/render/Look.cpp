@@ -92,10 +92,44 @@ bool usesShading(const VolumeAppearance& appearance, const PreparedGeometry& pre
     return true;
 }
 
+// Frame units that a pixel's width and height cover where clip w is `w`.
+glm::dmat2x3 pixelEdges(const glm::dmat4& toEye, double w, osgUtil::CullVisitor& visitor)
+{
+    const osg::Viewport* viewport = visitor.getViewport();
+    if (!viewport || !visitor.getProjectionMatrix()) return glm::dmat2x3(0.0);
+    const glm::dmat2 clipToEye = glm::inverse(glm::dmat2(toGlm(*visitor.getProjectionMatrix())));
+    const glm::dmat3 fromEye = glm::inverse(glm::dmat3(toEye));
+    return {fromEye * glm::dvec3(clipToEye[0] * (2.0 * w / viewport->width()), 0.0),
+            fromEye * glm::dvec3(clipToEye[1] * (2.0 * w / viewport->height()), 0.0)};
+}
+
+// Lowest and highest clip w of a box.
+glm::dvec2 clipW(const glm::dmat4& toEye, const core::Box3d& bounds, osgUtil::CullVisitor& visitor)
+{
+    if (!visitor.getProjectionMatrix()) return glm::dvec2(0.0);
+    const glm::dmat4 p = toGlm(*visitor.getProjectionMatrix());
+    glm::dvec2 range(std::numeric_limits<double>::infinity(), 0.0);
+    for (int i = 0; i < 8; ++i) {
+        const double w = p[3][3] + p[2][3] * (toEye * glm::dvec4(bounds.corner(i), 1.0)).z;
+        range = {std::min(range.x, w), std::max(range.y, w)};
+    }
+    return {std::max(range.x, 0.0), range.y};
+}
+
+// How many voxels a pixel covers, at least, where a volume is nearest; 1 where it is less.
+double voxelsPerPixel(const glm::dmat4& toEye, const core::Box3d& bounds,
+                      const core::SamplingParameters& sampling, osgUtil::CullVisitor& visitor)
+{
+    const glm::dmat2x3 edges = pixelEdges(toEye, clipW(toEye, bounds, visitor).x, visitor);
+    const double voxels = std::min(glm::length(edges[0] / sampling.voxelSize),
+                                   glm::length(edges[1] / sampling.voxelSize));
+    return std::isfinite(voxels) ? std::max(voxels, 1.0) : 1.0;
+}
+
 // Depth between samples: one period, per voxel axis, along the view axis; longer where that would
-// be more samples than allowed.
+// be more samples than allowed. Where pixels cover several voxels, periods count in pixels.
 double sampleDepth(const glm::dmat4& toEye, const core::Box3d& bounds,
-                   const core::SamplingParameters& sampling)
+                   const core::SamplingParameters& sampling, osgUtil::CullVisitor& visitor)
 {
     const glm::dvec3 alongView = glm::inverse(glm::dmat3(toEye)) * glm::dvec3(0.0, 0.0, -1.0);
     const double samplesPerDepth =
@@ -106,7 +140,8 @@ double sampleDepth(const glm::dmat4& toEye, const core::Box3d& bounds,
         nearest = std::min(nearest, depth);
         farthest = std::max(farthest, depth);
     }
-    return std::max(1.0 / samplesPerDepth, (farthest - nearest) / sampling.maximumSamples);
+    return std::max(voxelsPerPixel(toEye, bounds, sampling, visitor) / samplesPerDepth,
+                    (farthest - nearest) / sampling.maximumSamples);
 }
 
 // See VolumeLook::pixelMargin.
@@ -114,17 +149,8 @@ glm::dvec3 pixelMargin(const glm::dmat4& toEye, const core::Box3d& bounds,
                        osgUtil::CullVisitor& visitor)
 {
     constexpr double PIXELS = 0.125; // GL keeps at least 4 bits of a pixel's fraction
-    const osg::Viewport* viewport = visitor.getViewport();
-    if (!viewport || !visitor.getProjectionMatrix()) return glm::dvec3(0.0);
-    const glm::dmat4 p = toGlm(*visitor.getProjectionMatrix());
-    double w = 0.0;
-    for (int i = 0; i < 8; ++i)
-        w = std::max(w, p[3][3] + p[2][3] * (toEye * glm::dvec4(bounds.corner(i), 1.0)).z);
-    const glm::dmat2 clipToEye = glm::inverse(glm::dmat2(p));
-    const glm::dmat3 fromEye = glm::inverse(glm::dmat3(toEye));
-    const glm::dvec3 right(clipToEye[0] * (2.0 * w / viewport->width()), 0.0);
-    const glm::dvec3 up(clipToEye[1] * (2.0 * w / viewport->height()), 0.0);
-    const glm::dvec3 margin = PIXELS * (glm::abs(fromEye * right) + glm::abs(fromEye * up));
+    const glm::dmat2x3 edges = pixelEdges(toEye, clipW(toEye, bounds, visitor).y, visitor);
+    const glm::dvec3 margin = PIXELS * (glm::abs(edges[0]) + glm::abs(edges[1]));
     return std::isfinite(margin.x + margin.y + margin.z) ? margin : glm::dvec3(0.0);
 }
 
@@ -140,6 +166,7 @@ void setInterpolation(const VolumeAppearance& appearance, const TableTexture& ta
     features.before = features.rayFunction == VolumeAppearance::COMPOSITE && !features.nearest &&
                       appearance.getLookup() == VolumeAppearance::BEFORE_INTERPOLATION;
     features.preIntegrated = table.integrals;
+    features.shortRuns = table.integrals && table.shortRuns;
     // At a period of a voxel and more what the nearest entry is off by does not count.
     features.smoothTable =
         !table.integrals && (appearance.getExactFiltering() || voxelsPerSample < 0.999);
@@ -155,6 +182,7 @@ void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& pre
     features.voxelCoordinates = !features.slab && voxels && !prepared.voxelFrame;
     features.vertexColors = prepared.tetras.vertices.format().colorSize > 0;
     features.opaqueDepth = features.slab;
+    features.countSamples = features.slab && sampleCounting();
     features.rayFunction = usedRayFunction(appearance, prepared);
     features.shading = usesShading(appearance, prepared, features.rayFunction);
     features.gradientTexture = features.shading && !features.rgba &&
@@ -202,12 +230,11 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     look->center = prepared.regionBox.center();
     const glm::dmat4 toEye = toGlm(*volume.frameToEye);
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;
-    look->step = sampleDepth(toEye, prepared.regionBox, volume.sampling);
+    look->step = sampleDepth(toEye, prepared.regionBox, volume.sampling, visitor);
     look->maximumSteps = volume.sampling.maximumSamples + 2;
     const glm::dvec3 alongView = glm::inverse(glm::dmat3(toEye)) * glm::dvec3(0.0, 0.0, -1.0);
-    if (features.voxels)
-        setInterpolation(appearance, table,
-                         look->step * glm::length(alongView / volume.sampling.voxelSize), features);
+    look->voxelsPerSample = look->step * glm::length(alongView / volume.sampling.voxelSize);
+    if (features.voxels) setInterpolation(appearance, table, look->voxelsPerSample, features);
     if (features.slab) {
         look->regionMin = glm::vec3(prepared.regionBox.min);
         look->regionMax = glm::vec3(prepared.regionBox.max);

@@ -33,23 +33,25 @@ bool findDepthRange(VolumeInstance& volume, const core::View& view)
     const double c = p[2][2] - p[2][3], d = p[3][2] - p[3][3];
     const double farPlane =
         c != 0.0 && d / c > nearPlane ? d / c : std::numeric_limits<double>::infinity();
-    double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
-    for (const SelectedBrick& brick : volume.bricks) {
+    const auto expand = [&view](core::DepthInterval& range, const core::Box3d& box) {
         for (int i = 0; i < 8; ++i) {
-            const double depth = -(view.toEye * glm::dvec4(brick.box.corner(i), 1.0)).z;
-            nearest = std::min(nearest, depth);
-            farthest = std::max(farthest, depth);
+            const double depth = -(view.toEye * glm::dvec4(box.corner(i), 1.0)).z;
+            range.nearDepth = std::min(range.nearDepth, depth);
+            range.farDepth = std::max(range.farDepth, depth);
         }
-    }
-    if (volume.bricks.empty()) {
-        for (int i = 0; i < 8; ++i) {
-            const double depth =
-                -(view.toEye * glm::dvec4(volume.prepared->bounds.corner(i), 1.0)).z;
-            nearest = std::min(nearest, depth);
-            farthest = std::max(farthest, depth);
-        }
-    }
-    volume.depth = {std::max(nearest, nearPlane), std::min(farthest, farPlane)};
+    };
+    const auto between = [nearPlane, farPlane](const core::DepthInterval& range) {
+        return core::DepthInterval{std::max(range.nearDepth, nearPlane),
+                                   std::min(range.farDepth, farPlane)};
+    };
+    constexpr double INFINITE = std::numeric_limits<double>::infinity();
+    core::DepthInterval shown{INFINITE, -INFINITE}, whole{INFINITE, -INFINITE};
+    for (const SelectedBrick& brick : volume.bricks)
+        expand(shown, brick.box);
+    if (volume.bricks.empty()) expand(shown, volume.prepared->bounds);
+    expand(whole, volume.prepared->regionBox);
+    volume.depth = between(shown);
+    volume.wholeDepth = between(whole);
     return volume.depth.nearDepth < volume.depth.farDepth;
 }
 

@@ -39,7 +39,10 @@ BrickBatch batchOf(const SelectedBrick& brick)
     batch.clipMin = glm::vec3(brick.box.min);
     batch.clipMax = glm::vec3(brick.box.max);
     batch.textureScale = brick.textureScale;
+    batch.brickMin = glm::vec3(brick.clipBox.min);
+    batch.brickMax = glm::vec3(brick.clipBox.max);
     batch.textureOffset = brick.textureOffset;
+    batch.cells = brick.cells;
     return batch;
 }
 
@@ -111,6 +114,13 @@ private:
     void appendFaces(const core::DepthInterval& interval)
     {
         const double reference = _volume.look->referenceDepth;
+        // Outermost intervals hold all samples to the ends of the volume, wherever something shows.
+        const bool nearest = interval.nearDepth <= _volume.depth.nearDepth;
+        const bool farthest = interval.farDepth >= _volume.depth.farDepth;
+        const float nearDepth = static_cast<float>(
+            (nearest ? _volume.wholeDepth.nearDepth : interval.nearDepth) - reference);
+        const float farDepth = static_cast<float>(
+            (farthest ? _volume.wholeDepth.farDepth : interval.farDepth) - reference);
         for (std::size_t f = 0; f < _polytope.faceCount(); ++f) {
             if (!facesEye(f)) continue;
             const auto first = static_cast<unsigned>(_mesh->vertices.size() / SLAB_STRIDE);
@@ -118,10 +128,7 @@ private:
                                 end = _polytope.faceOffsets[f + 1];
             for (std::uint32_t i = begin; i < end; ++i) {
                 const glm::vec3 p(_polytope.vertices[_polytope.indices[i]]);
-                _mesh->vertices.insert(_mesh->vertices.end(),
-                                       {p.x, p.y, p.z,
-                                        static_cast<float>(interval.nearDepth - reference),
-                                        static_cast<float>(interval.farDepth - reference)});
+                _mesh->vertices.insert(_mesh->vertices.end(), {p.x, p.y, p.z, nearDepth, farDepth});
             }
             for (unsigned i = 2; i < end - begin; ++i)
                 _mesh->indices.insert(_mesh->indices.end(), {first, first + i - 1, first + i});

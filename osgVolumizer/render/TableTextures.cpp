@@ -6,7 +6,9 @@
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstring>
 
 namespace osgVolumizer {
@@ -19,6 +21,9 @@ constexpr double BITS = 1.0 / 0.6931471805599453; // of extinction, in units of 
 // Few enough to stay in a cache, and to be made in a millisecond; so many that the nearest one
 // hardly differs.
 constexpr int ENTRIES = 16384;
+
+// Bits times entries: differences of floats that are not larger are good to 1e-4 bits.
+constexpr float LARGEST_INTEGRAL = 8192.0f;
 
 // Whether midpoint sampling at a usual rate would be off by so much that pre-integration pays; says
 // why.
@@ -48,6 +53,20 @@ osg::ref_ptr<osg::TextureBuffer> makeTexture(const std::vector<glm::vec4>& texel
     return texture;
 }
 
+// Prefix sums over the entries that show something, and over those about which integrals grow.
+void countShown(const std::vector<glm::vec4>& texels, TableTexture& table)
+{
+    const auto count = static_cast<std::size_t>(table.count);
+    auto entries = std::make_shared<std::vector<int>>(1, 0);
+    auto gaps = std::make_shared<std::vector<int>>(1, 0);
+    for (std::size_t i = 0; i < count; ++i)
+        entries->push_back(entries->back() + (texels[i].a > 0.0f));
+    for (std::size_t i = 0; table.integrals && i < count; ++i)
+        gaps->push_back(gaps->back() + (texels[count + i + 1].a > texels[count + i].a));
+    table.shownEntries = std::move(entries);
+    table.shownGaps = std::move(gaps);
+}
+
 TableTexture makeTable(const LookupTable& table, const osg::Vec2d& range,
                        VolumeAppearance::Lookup lookup)
 {
@@ -67,16 +86,33 @@ TableTexture makeTable(const LookupTable& table, const osg::Vec2d& range,
     result.high = emission(texels.back());
     if (result.integrals) {
         const core::TransferIntegral integral(*result.function);
-        for (const glm::dvec4& sum : integral.tabulate(result.count, 0.0, 1.0))
+        const double half = 0.5 / (ENTRIES - 1.0);
+        for (const glm::dvec4& sum : integral.tabulate(ENTRIES + 1, -half, 1.0 + half))
             texels.emplace_back(sum * BITS);
+        result.shortRuns = texels.back().a > LARGEST_INTEGRAL;
     } else {
         texels.push_back(texels.back()); // for interpolation at the last
     }
+    countShown(texels, result);
     result.texture = makeTexture(texels);
     return result;
 }
 
 } // namespace
+
+bool TableTexture::shows(double lowFraction, double highFraction) const
+{
+    // The shader's floats are off by less than a hundredth of an entry.
+    const double last = count - 1.0;
+    if (!(lowFraction <= highFraction)) return false;
+    const auto entry = [last](double v) {
+        return static_cast<std::size_t>(std::clamp(v, 0.0, last));
+    };
+    const std::size_t first = entry(std::floor(lowFraction * last + 0.01));
+    const std::size_t end = std::max(entry(std::ceil(highFraction * last - 0.01)), first) + 1;
+    return (*shownEntries)[end] > (*shownEntries)[first] ||
+           (integrals && (*shownGaps)[end] > (*shownGaps)[first]);
+}
 
 TableTexture TableTextures::get(const LookupTable& table, const osg::Vec2d& range,
                                 VolumeAppearance::Lookup lookup)

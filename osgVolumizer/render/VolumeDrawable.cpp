@@ -1,6 +1,7 @@
 #include "VolumeDrawable.h"
 
 #include "../Error.h"
+#include "BrickCells.h"
 #include "BrickTextures.h"
 #include "CoarseTexture.h"
 #include "ContextResources.h"
@@ -91,7 +92,7 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
     uniforms.set("frameToUnits", look.frameToUnits);
     if (look.table.texture) setTable(uniforms, look);
     if (look.features.slab) {
-        uniforms.set("stepDepth", static_cast<float>(look.step));
+        uniforms.set("stepsPerDepth", static_cast<float>(1.0 / look.step));
         uniforms.set("maximumSteps", static_cast<float>(look.maximumSteps));
         if (look.features.layerDepth) uniforms.set("inFrontOfLayer", look.inFrontOfLayer ? 1 : 0);
         if (look.features.ranked) uniforms.set("rank", look.rank);
@@ -123,8 +124,6 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
         state.applyTextureAttribute(UNIT_SORTED_NEAR, resources.capture.colors.get());
         uniforms.set("surfaceWeights", look.surfaceWeights);
     }
-    uniforms.set("depthTextureScale", glm::vec2(1.0f / static_cast<float>(buffers.width),
-                                                1.0f / static_cast<float>(buffers.height)));
     uniforms.set("clipZOrigin", glm::vec3(rays.clipZOrigin));
     uniforms.set("clipZDirection", glm::vec3(rays.clipZDirection));
     uniforms.set("clipWOrigin", glm::vec3(rays.clipWOrigin));
@@ -185,7 +184,8 @@ private:
     bool _enabled[ATTRIBUTE_COUNT] = {};
 };
 
-void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms, const BrickBatch& batch)
+void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms,
+               const ProgramFeatures& features, const BrickBatch& batch)
 {
     osg::State& state = *renderInfo.getState();
     if (batch.texture) {
@@ -202,6 +202,18 @@ void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms, const Bric
         uniforms.set("textureScale", batch.textureScale * voxels.scale);
         uniforms.set("textureOffset", batch.textureOffset * voxels.scale + voxels.offset);
     }
+    if (features.skipping) {
+        const bool known = batch.cells && batch.cells->texture;
+        state.applyTextureAttribute(UNIT_CELLS,
+                                    known ? batch.cells->texture.get() : occupiedEverywhere());
+        uniforms.set("cellOrigin", known ? batch.cells->origin : glm::vec3(0.0f));
+        uniforms.set("cellSize", known ? batch.cells->cellSize : 1e6f);
+    }
+    if (features.preIntegrated) {
+        uniforms.set("brickMin", batch.brickMin);
+        uniforms.set("brickMax", batch.brickMax);
+    }
+    uniforms.set("homogeneous", batch.cells && batch.cells->homogeneous ? 1 : 0);
     uniforms.set("clipMin", batch.clipMin);
     uniforms.set("clipMax", batch.clipMax);
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.indexCount), GL_UNSIGNED_INT,
@@ -250,7 +262,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
         const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
         const auto drawBatches = [&]() {
             for (const BrickBatch& batch : _mesh->batches)
-                drawBatch(renderInfo, uniforms, batch);
+                drawBatch(renderInfo, uniforms, _look->features, batch);
         };
         if (_look->scissors.empty()) {
             drawBatches();
@@ -265,7 +277,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
           static_cast<double>(_mesh->batches.size()));
     // OSG compares attributes by address: make it bind its own again whatever ours were.
     for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH, UNIT_LAYER_DEPTH,
-                          UNIT_SORTED_FAR, UNIT_SORTED_NEAR})
+                          UNIT_SORTED_FAR, UNIT_SORTED_NEAR, UNIT_CELLS})
         state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }
 

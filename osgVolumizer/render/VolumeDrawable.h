@@ -22,12 +22,16 @@
 namespace osgVolumizer {
 namespace render {
 
+struct BrickCells;
+
 /// What is drawn from one brick: a run of triangles, and the place of the brick.
 struct BrickBatch
 {
     osg::ref_ptr<osg::Texture3D> texture; ///< null without voxels
     std::size_t textureBytes = 0;
-    glm::vec3 clipMin{0.0f}, clipMax{0.0f};            ///< frame
+    std::shared_ptr<const BrickCells> cells;           ///< null where nothing is known
+    glm::vec3 clipMin{0.0f}, clipMax{0.0f};            ///< frame; of what is drawn
+    glm::vec3 brickMin{0.0f}, brickMax{0.0f};          ///< frame; of what the texture has
     glm::vec3 textureScale{1.0f}, textureOffset{0.0f}; ///< voxel -> texture coordinate
     unsigned firstIndex = 0, indexCount = 0;
 };
@@ -65,6 +69,7 @@ struct VolumeLook
     glm::dvec3 center{0.0};               ///< frame; the middle of the volume
     double referenceDepth = 0.0;          ///< eye units; depths of slabs are counted from here
     double step = 1.0;              ///< between samples or slices: depth, distance or frame units
+    double voxelsPerSample = 1.0;   ///< along the view axis
     glm::dvec3 surfaceNormal{0.0};  ///< slices: frame units; along which `step` is counted
     bool inFrontOfLayer = false;    ///< slabs: which part of a segment split by surfaces
     glm::vec2 surfaceWeights{0.0f}; ///< captured surfaces: 1 if colour, alpha is weighted by alpha

@@ -20,9 +20,11 @@ namespace render {
 struct SelectedBrick
 {
     std::int64_t index = 0;
-    core::Box3d box; ///< frame; clip box, cut down to the geometry
+    core::Box3d box;     ///< frame; clip box, cut down to the geometry and to what shows
+    core::Box3d clipBox; ///< voxel frame
     BrickTexture texture;
     glm::vec3 textureScale{1.0f}, textureOffset{0.0f};
+    std::shared_ptr<const BrickCells> cells; ///< null where nothing is known
 };
 
 /// One volume in one view of one frame, from cull to sort.
@@ -35,12 +37,18 @@ struct VolumeInstance
     osg::ref_ptr<osg::RefMatrix> frameToEye; ///< model-view of the leaf
     osg::ref_ptr<VolumeDrawable> drawable; ///< of the leaf that stands for the volume until sorting
     std::vector<SelectedBrick> bricks;
+    /// What selection found: bricks that show nothing, bricks of one value; cells in the boxes of
+    /// the others, and those of them that show something.
+    std::int64_t emptyBricks = 0, homogeneousBricks = 0, cellCount = 0, occupiedCells = 0;
+    double cellSize = 8.0; ///< voxels
     core::SamplingParameters sampling;
     std::uint64_t viewId = 0; ///< see viewIdOf()
 
     // Known once sorting begins:
     osgUtil::RenderLeaf* leaf = nullptr;
-    core::DepthInterval depth; ///< in front of the near plane
+    core::DepthInterval depth; ///< of the selected bricks, in front of the near plane
+    /// The same of all the volume: where its samples are counted from, whatever is left out.
+    core::DepthInterval wholeDepth;
 };
 
 } // namespace render

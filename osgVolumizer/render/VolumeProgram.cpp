@@ -9,6 +9,8 @@
 #include <osg/Depth>
 #include <osg/Program>
 
+#include <atomic>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -43,6 +45,9 @@ std::string header(const ProgramFeatures& features)
         text += "#define SLOTS " + std::to_string(features.slotCount) + "\n";
     define(features.shading, "SHADING");
     define(features.gradientTexture, "GRADIENT_TEXTURE");
+    define(features.shortRuns, "SHORT_RUNS");
+    define(features.skipping, "SKIPPING");
+    define(features.countSamples, "COUNT_SAMPLES");
     define(features.smoothTable, "SMOOTH_TABLE");
     define(features.exact || features.nearest || features.cubic || features.before, "FETCH");
     text += "#define PLANES " + std::to_string(features.planeCount) + "\n";
@@ -57,14 +62,16 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
     result->addShader(
         new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource(kind + ".vert.glsl")));
     std::string fragment = header(features);
-    for (const char* file :
-         {"voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl", "segment.glsl"})
+    for (const char* file : {"voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl",
+                             "skipping.glsl", "segment.glsl"})
         fragment += shaderSource(file);
     if (features.paintCount > 0) fragment += paintSource(features.paintCount);
     fragment += shaderSource(kind + ".frag.glsl");
     result->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));
     return result;
 }
+
+std::atomic<bool> countsSamples{false};
 
 osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
 {
@@ -98,11 +105,22 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->addUniform(new osg::Uniform("slotColors", int(UNIT_SORTED_NEAR)));
     set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
     set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
+    set->addUniform(new osg::Uniform("cells", int(UNIT_CELLS)));
     set->setRenderBinDetails(10, "DepthSortedBin");
     return set;
 }
 
 } // namespace
+
+void setSampleCounting(bool on)
+{
+    countsSamples = on;
+}
+
+bool sampleCounting()
+{
+    return countsSamples;
+}
 
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
 {

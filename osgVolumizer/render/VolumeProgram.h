@@ -26,6 +26,7 @@ struct ProgramFeatures
     bool nearest = false, cubic = false; ///< else linear
     bool before = false;                 ///< look samples up, then interpolate
     bool preIntegrated = false;          ///< look runs of values up
+    bool shortRuns = false;              ///< look short runs up as single values
     bool smoothTable = false;            ///< interpolate between entries
     VolumeAppearance::RayFunction rayFunction = VolumeAppearance::COMPOSITE;
     bool shading = false;
@@ -33,8 +34,10 @@ struct ProgramFeatures
     /// Slots of captured surfaces that are composited while marching, over all pixels of an area;
     /// multiple of 4. Expects opaqueDepth, one brick, and the whole depth of the volume.
     int slotCount = 0;
-    int paintCount = 0; ///< bricks of volumes that paint this one; no more than 4
-    int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
+    bool skipping = false;     ///< leap over cells that show nothing
+    bool countSamples = false; ///< draw the number of samples: see setSampleCounting()
+    int paintCount = 0;        ///< bricks of volumes that paint this one; no more than 4
+    int planeCount = 0;        ///< half-spaces that end the segment, besides the clip box
 
     /// Whether the rays' values are gathered in a target of their own, and drawn as one layer.
     bool gathers() const
@@ -50,9 +53,11 @@ struct ProgramFeatures
         result = (result | static_cast<std::uint64_t>(slotCount / 4)) << 3;
         result = (result | static_cast<std::uint64_t>(paintCount)) << 3 |
                  static_cast<std::uint64_t>(rayFunction);
-        for (bool flag : {slab, voxelCoordinates, vertexColors, voxels, rgba, opaqueDepth,
-                          layerDepth, ranked, spherical, exact, nearest, cubic, before,
-                          preIntegrated, smoothTable, shading, gradientTexture})
+        for (bool flag :
+             {slab,       voxelCoordinates, vertexColors, voxels,      rgba,    opaqueDepth,
+              layerDepth, ranked,           spherical,    exact,       nearest, cubic,
+              before,     preIntegrated,    shortRuns,    smoothTable, shading, gradientTexture,
+              skipping,   countSamples})
             result = result << 1 | std::uint64_t(flag);
         return result;
     }
@@ -67,6 +72,7 @@ enum TextureUnit : unsigned
     UNIT_LAYER_DEPTH,
     UNIT_SORTED_FAR, ///< the four farthest depths of a pixel's surfaces
     UNIT_SORTED_NEAR,
+    UNIT_CELLS,
     UNIT_FIRST_LAYER,                   ///< and the following: captured depths
     UNIT_FIRST_PAINT = UNIT_FIRST_LAYER ///< and the following, in other programs
 };
@@ -80,6 +86,11 @@ enum Attribute : unsigned
     ATTRIBUTE_SPACING, ///< slices: thickness of the layer
     ATTRIBUTE_COUNT
 };
+
+/// Whether slabs draw how many samples they take, added up in the red channel of a float
+/// framebuffer, instead of colours: for tests and for tuning. Off by default.
+void setSampleCounting(bool on);
+bool sampleCounting();
 
 /// The state that a volume with these features is drawn with: program, blending, depth test without
 /// writes, transparent bin. Shared by all volumes, views and contexts. Thread safe.

@@ -13,16 +13,14 @@ void clipToPlane(vec4 plane, vec3 origin, vec3 direction, inout float tNear, ino
         tFar = tNear;
 }
 
-// The segment in a box; boxes are half-open, so that neighbours share no ray and leave none out.
+// The segment in a box; boxes are half-open, so that neighbours share no ray and leave none out: the bias, which is
+// nothing otherwise, decides for rays in a face.
 vec2 boxSegment(vec3 low, vec3 high, vec3 origin, vec3 direction)
 {
-    bvec3 parallel = equal(direction, vec3(0.0));
-    vec3 safe = mix(direction, vec3(1.0), parallel);
-    vec3 a = (low - origin) / safe;
-    vec3 b = (high - origin) / safe;
-    vec3 always = mix(vec3(1e30), vec3(-1e30), lessThanEqual(low, origin));
-    always = mix(vec3(1e30), always, lessThan(origin, high));
-    vec3 enter = mix(min(a, b), always, parallel);
-    vec3 leave = mix(max(a, b), -always, parallel);
+    vec3 inverse = 1.0 / mix(direction, vec3(1e-30), equal(direction, vec3(0.0)));
+    vec3 bias = -1e-15 * inverse;
+    vec3 a = (low - origin) * inverse + bias;
+    vec3 b = (high - origin) * inverse + bias;
+    vec3 enter = min(a, b), leave = max(a, b);
     return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
 }

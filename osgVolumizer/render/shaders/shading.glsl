@@ -16,38 +16,38 @@ uniform mat3 rayOriginEye, rayDirectionEye; // times (dx, dy, 1)
 #ifdef GRADIENT_TEXTURE
 uniform vec2 gradientDecode; // scale, offset
 
-vec3 gradientAt(vec3 voxelCoordinate)
+vec3 gradientAt(vec3 place)
 {
-    vec3 g = textureLod(voxels, voxelCoordinate * textureScale + textureOffset, 0.0).rgb;
-    return g * gradientDecode.x + gradientDecode.y;
+#ifdef FETCH
+    place = (place + 0.5) / vec3(textureSize(voxels, 0));
+#endif
+    return textureLod(voxels, place, 0.0).rgb * gradientDecode.x + gradientDecode.y;
 }
 #else
-float scalarAt(vec3 voxelCoordinate)
+float scalarAt(vec3 place)
 {
 #ifdef RGBA
-    return voxelAt(voxelCoordinate).a;
+    return voxelAt(place).a;
 #else
-    return voxelAt(voxelCoordinate);
+    return voxelAt(place);
 #endif
 }
 
 // Central differences over one sample to each side, less at the last samples.
-vec3 gradientAt(vec3 voxelCoordinate)
+vec3 gradientAt(vec3 place)
 {
-    vec3 first = round(0.5 - textureOffset * vec3(textureSize(voxels, 0)));
-    vec3 low = max(voxelCoordinate - 1.0, first);
-    vec3 high = min(voxelCoordinate + 1.0, first + vec3(textureSize(voxels, 0) - 1));
-    vec3 p = voxelCoordinate;
-    return vec3(scalarAt(vec3(high.x, p.yz)) - scalarAt(vec3(low.x, p.yz)),
-                scalarAt(vec3(p.x, high.y, p.z)) - scalarAt(vec3(p.x, low.y, p.z)),
-                scalarAt(vec3(p.xy, high.z)) - scalarAt(vec3(p.xy, low.z))) /
-           max(high - low, 1e-6);
+    vec3 low = max(place - VOXEL_LENGTH, FIRST_PLACE);
+    vec3 high = min(place + VOXEL_LENGTH, LAST_PLACE);
+    return vec3(scalarAt(vec3(high.x, place.yz)) - scalarAt(vec3(low.x, place.yz)),
+                scalarAt(vec3(place.x, high.y, place.z)) - scalarAt(vec3(place.x, low.y, place.z)),
+                scalarAt(vec3(place.xy, high.z)) - scalarAt(vec3(place.xy, low.z))) *
+           VOXEL_LENGTH / max(high - low, 1e-6 * VOXEL_LENGTH);
 }
 #endif
 
-vec3 shade(vec3 color, vec3 voxelCoordinate, vec3 eye, vec3 toEye)
+vec3 shade(vec3 color, vec3 place, vec3 eye, vec3 toEye)
 {
-    vec3 n = gradientToEye * gradientAt(voxelCoordinate);
+    vec3 n = gradientToEye * gradientAt(place);
     // No direction where nothing varies, without a jump to it.
     n *= inversesqrt(dot(n, n) + 1e-8);
     vec3 diffuse = vec3(material.x), specular = vec3(0.0);

@@ -19,11 +19,10 @@ uniform vec3 clipMin, clipMax;     // of the brick
 #if PLANES > 0
 uniform vec4 planes[PLANES];
 #endif
-uniform float stepDepth;
+uniform float stepsPerDepth;
 uniform float maximumSteps;
 #ifdef OPAQUE_DEPTH
 uniform sampler2D opaqueDepth;
-uniform vec2 depthTextureScale; // window -> texture coordinate
 uniform vec3 clipZOrigin, clipZDirection, clipWOrigin, clipWDirection; // times (dx, dy, 1)
 #endif
 #ifdef LAYER_DEPTH
@@ -55,7 +54,7 @@ float rayAt(float windowZ)
 // Where the ray meets what left its depth in a buffer; far away where nothing did.
 float depthOnRay(sampler2D depths)
 {
-    float windowZ = textureLod(depths, gl_FragCoord.xy * depthTextureScale, 0.0).r;
+    float windowZ = texelFetch(depths, ivec2(gl_FragCoord.xy), 0).r;
     return windowZ < 1.0 ? rayAt(windowZ) : 1e30;
 }
 #endif
@@ -72,21 +71,29 @@ float sortedDepth(int i)
 // Number of steps for a segment, such that their mean over all segments is the period.
 float stepsOf(float tNear, float tFar)
 {
-    return clamp(floor((tFar - tNear) / stepDepth + 0.5), 1.0, maximumSteps);
+    return clamp(floor((tFar - tNear) * stepsPerDepth + 0.5), 1.0, maximumSteps);
 }
 
 #ifdef SHADING
+vec3 originEye, directionEye, towardsEye; // the ray in the eye frame
+
 // The colour that the scene's lights make of a classified one.
-vec4 lit(vec4 c, vec3 origin, vec3 direction, float t)
+vec4 lit(vec4 c, vec3 place, float t)
 {
     if (!(c.a > 0.0)) return c;
-    vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
-    vec3 directionEye = rayDirectionEye * window;
-    return vec4(shade(c.rgb, origin + t * direction, rayOriginEye * window + t * directionEye,
-                      -normalize(directionEye)),
-                c.a);
+    return vec4(shade(c.rgb, place, originEye + t * directionEye, towardsEye), c.a);
 }
 #endif
+
+#ifdef COUNT_SAMPLES
+float sampleCount = 0.0;
+#define COUNT_SAMPLE sampleCount += 1.0;
+#else
+#define COUNT_SAMPLE
+#endif
+
+// In the loops below the place is advanced by the last statement, and what ends them early is in the condition:
+// either saves a third of the time on llvmpipe. Steps that meet nothing are left out whole.
 
 #if defined(MAXIMUM) || defined(MINIMUM)
 #ifdef MAXIMUM
@@ -102,34 +109,43 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     tNear = max(tNear, brick.x);
     tFar = min(tFar, brick.y);
     float count = stepsOf(tNear, tFar);
-    vec3 p = origin + direction * tNear, dp = direction * ((tFar - tNear) / count);
-    vec4 texel = voxelAt(p);
+    vec3 place = placeOf(origin + direction * tNear);
+    vec3 rate = VOXEL_LENGTH * direction * ((tFar - tNear) / count);
+    vec4 texel = voxelAt(place);
     vec4 best = vec4(texel.rgb * texel.a, texel.a);
-    for (float i = 1.0; i <= count; i += 1.0) {
-        texel = voxelAt(p + i * dp);
+    place += rate;
+    for (int i = int(count); i > 0; --i) {
+        texel = voxelAt(place);
         best = BETTER(best, vec4(texel.rgb * texel.a, texel.a));
+        COUNT_SAMPLE
+        place += rate;
     }
     return best;
 }
 #else
-// Highest or lowest value on the brick's part of the segment, ends included. Between samples the extreme is looked for about the best
-// one, by halving: an interpolant has kinks, which would make plain sampling first order.
+// Highest or lowest value on the brick's part of the segment, ends included. Between samples the extreme is looked
+// for about the best one, by halving: an interpolant has kinks, which would make plain sampling first order.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
     tNear = max(tNear, brick.x);
     tFar = min(tFar, brick.y);
     float count = stepsOf(tNear, tFar);
-    vec3 p = origin + direction * tNear, dp = direction * ((tFar - tNear) / count);
-    float best = voxelAt(p), at = 0.0;
-    for (float i = 1.0; i <= count; i += 1.0) {
-        float value = voxelAt(p + i * dp);
-        if (BETTER(value, best) != best) at = i;
+    vec3 start = placeOf(origin + direction * tNear);
+    vec3 rate = VOXEL_LENGTH * direction * ((tFar - tNear) / count);
+    vec3 place = start + rate;
+    float best = voxelAt(start), at = 0.0;
+    int steps = int(count);
+    for (int i = 1; i <= steps; ++i) {
+        float value = voxelAt(place);
+        at = BETTER(value, best) != best ? float(i) : at;
         best = BETTER(value, best);
+        COUNT_SAMPLE
+        place += rate;
     }
     float reach = 0.5;
     for (int i = 0; i < 5; ++i) {
         float before = max(at - reach, 0.0), after = min(at + reach, count);
-        float low = voxelAt(p + before * dp), high = voxelAt(p + after * dp);
+        float low = voxelAt(start + before * rate), high = voxelAt(start + after * rate);
         float better = BETTER(low, high);
         if (BETTER(better, best) != best) at = better == low ? before : after;
         best = BETTER(better, best);
@@ -143,29 +159,33 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 // Integral of the value over the brick's steps, and of 1.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
-    float count = stepsOf(tNear, tFar);
-    float dt = (tFar - tNear) / count;
+    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
     float first = max(0.0, ceil((brick.x - tNear) / dt - 0.5));
-    float last = min(count, ceil((brick.y - tNear) / dt - 0.5));
-    vec3 p = origin + direction * (tNear + 0.5 * dt), dp = direction * dt;
+    int steps = int(min(count, ceil((brick.y - tNear) / dt - 0.5)) - first);
+    vec3 place = placeOf(origin + direction * (tNear + (first + 0.5) * dt));
+    vec3 rate = VOXEL_LENGTH * direction * dt;
     float sum = 0.0;
-    for (float i = first; i < last; i += 1.0) sum += voxelAt(p + i * dp);
+    for (int i = 0; i < steps; ++i) {
+        sum += voxelAt(place);
+        COUNT_SAMPLE
+        place += rate;
+    }
     float stepUnits = dt * length(frameToUnits * direction);
-    return vec4(sum * stepUnits, max(last - first, 0.0) * stepUnits, 0.0, 0.0);
+    return vec4(sum * stepUnits, float(max(steps, 0)) * stepUnits, 0.0, 0.0);
 }
 
 #elif defined(ISOSURFACE)
 uniform float isoTexel;
 
-float overIso(vec3 p) { return voxelAt(p) - isoTexel; }
+float overIso(vec3 place) { return voxelAt(place) - isoTexel; }
 
 // Root between t0 and t1, where the function has other signs: false position, Illinois variant (Dowell and
 // Jarratt, "A modified regula falsi method", BIT 11, 1971).
-float rootBetween(vec3 origin, vec3 direction, float t0, float f0, float t1, float f1)
+float rootBetween(vec3 start, vec3 rate, float t0, float f0, float t1, float f1)
 {
     for (int i = 0; i < 8 && f1 != 0.0; ++i) {
         float t = t1 - f1 * (t1 - t0) / (f1 - f0);
-        float f = overIso(origin + direction * t);
+        float f = overIso(start + t * rate);
         if (f * f1 < 0.0) {
             t0 = t1;
             f0 = f1;
@@ -183,89 +203,137 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
     tNear = max(tNear, brick.x);
     tFar = min(tFar, brick.y);
-    float count = stepsOf(tNear, tFar);
-    float dt = (tFar - tNear) / count;
-    float before = overIso(origin + direction * tNear);
-    for (float i = 1.0; i <= count; i += 1.0) {
-        float t = tNear + i * dt;
-        float after = overIso(origin + direction * t);
-        if ((before < 0.0) != (after < 0.0)) {
-            t = rootBetween(origin, direction, t - dt, before, t, after);
-            vec3 color = classifyTexel(isoTexel).rgb;
+    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
+    vec3 start = placeOf(origin + direction * tNear), rate = VOXEL_LENGTH * direction * dt;
+    float i = 0.0, last = count;
+#ifdef SKIPPING
+    vec2 shown = occupiedPart(origin, direction, tNear, tFar);
+    i = max(i, floor((shown.x - tNear) / dt));
+    last = min(last, ceil((shown.y - tNear) / dt));
+#endif
+    vec3 place = start + i * rate;
+    float before = overIso(place), after = before;
+    place += rate;
+    for (; i < last && (before < 0.0) == (after < 0.0); i += 1.0) {
+        before = after;
+        after = overIso(place);
+        COUNT_SAMPLE
+        place += rate;
+    }
+    if ((before < 0.0) == (after < 0.0)) return vec4(0.0);
+    float at = rootBetween(start, rate, i - 1.0, before, i, after);
+    vec4 color = vec4(classifyTexel(isoTexel).rgb, 1.0);
 #ifdef SHADING
-            color = lit(vec4(color, 1.0), origin, direction, t).rgb;
+    color = lit(color, start + at * rate, tNear + at * dt);
 #endif
 #ifdef PAINTED
-            color = painted(color, origin + t * direction);
+    color.rgb = painted(color.rgb, origin + (tNear + at * dt) * direction);
 #endif
-            return vec4(color, 1.0);
-        }
-        before = after;
-    }
-    return vec4(0.0);
+    return color;
 }
 
 #elif defined(PREINTEGRATED)
-// Light of the part of [tNear, tFar] in the brick, front to back: premultiplied colour, opacity. The ends of
-// steps are where the table is asked, so steps are cut at the brick's ends.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+uniform bool homogeneous;           // all of the brick has one value
+uniform vec3 brickMin, brickMax; // what the brick's texture has values for
+
+// Adds the piece of the ray from the last place to this one, where the depth is t.
+void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float unitsPerDepth,
+            inout float entry, inout vec4 integral, inout vec4 light)
 {
-    float dt = (tFar - tNear) / stepsOf(tNear, tFar);
-    float unitsPerDepth = length(frameToUnits * direction);
-    float t = max(tNear, brick.x), end = min(tFar, brick.y);
-    float step = floor((t - tNear) / dt);
-    vec3 color = vec3(0.0);
-    float transmittance = 1.0;
-    float entry = tableEntry(origin + t * direction);
-    vec4 integral = tableIntegral(entry);
-    for (float i = 0.0; i < maximumSteps + 2.0 && t < end; i += 1.0) {
-        step += 1.0;
-        float next = max(t, min(tNear + step * dt, end));
-        float nextEntry = tableEntry(origin + next * direction);
-        vec4 nextIntegral = tableIntegral(nextEntry);
-        vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
+    float nextEntry = tableEntryAfter(entry, place);
+    vec4 nextIntegral = tableIntegral(nextEntry);
+    vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
 #ifdef SHADING
-        c = lit(c, origin, direction, 0.5 * (t + next));
+    c = lit(c, place - 0.5 * depth * VOXEL_LENGTH * direction, t - 0.5 * depth);
 #endif
 #ifdef PAINTED
-        c.rgb = painted(c.rgb, origin + 0.5 * (t + next) * direction);
+    c.rgb = painted(c.rgb, origin + (t - 0.5 * depth) * direction);
 #endif
-        float through = exp2(-c.a * (next - t) * unitsPerDepth);
-        color += transmittance * (1.0 - through) * c.rgb;
-        transmittance *= through;
-        t = next;
-        entry = nextEntry;
-        integral = nextIntegral;
-        if (transmittance < OPAQUE_ENOUGH) break;
-    }
-    return vec4(color, 1.0 - transmittance);
+    COUNT_SAMPLE
+    float next = light.a * exp2(-c.a * (depth * unitsPerDepth));
+    light = vec4(light.rgb + (light.a - next) * c.rgb, next);
+    entry = nextEntry;
+    integral = nextIntegral;
 }
+
+// Light of the steps that reach into what the brick shows, front to back: premultiplied colour, opacity. The ends
+// of steps are where the table is asked, so steps are cut at the brick's ends.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
+{
+    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
+    vec2 brick = boxSegment(brickMin, brickMax, origin, direction);
+    float start = max(tNear, brick.x), stop = min(tFar, brick.y);
+#ifdef SKIPPING
+    shown = occupiedPart(origin, direction, max(start, shown.x), min(stop, shown.y));
+#endif
+    float i = max(0.0, floor((shown.x - tNear) / dt));
+    float last = min(count, ceil((shown.y - tNear) / dt));
+    float unitsPerDepth = length(frameToUnits * direction);
+    vec3 rate = VOXEL_LENGTH * direction;
+    vec4 light = vec4(0.0, 0.0, 0.0, 1.0); // colour, transmittance
+    if (homogeneous && i < last) {
+        // One step from end to end.
+        float end = min(stop, tNear + last * dt);
+        tNear = max(start, tNear + i * dt);
+        dt = end - tNear;
+        i = 0.0;
+        last = 1.0;
+    }
+    float t = max(start, tNear + i * dt);
+    vec3 place = placeOf(origin + t * direction);
+    float entry = tableEntry(place);
+    vec4 integral = tableIntegral(entry);
+    float depth = min(stop, tNear + (i + 1.0) * dt) - t; // of the first step, which may be cut
+    place += rate * depth;
+    t += depth;
+    for (int steps = int(last - i); steps > 0 && light.a > OPAQUE_ENOUGH; --steps) {
+        addRun(origin, direction, t, place, depth, unitsPerDepth, entry, integral, light);
+        depth = min(dt, stop - t); // of the last one, which may be cut too
+        t += depth;
+        place += rate * depth;
+    }
+    return vec4(light.rgb, 1.0 - light.a);
+}
+
 #else
+uniform bool homogeneous; // all of the brick has one value
+
 // Light of the brick's steps, front to back: premultiplied colour, opacity.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
-    float count = stepsOf(tNear, tFar);
-    float dt = (tFar - tNear) / count;
-    float first = max(0.0, ceil((brick.x - tNear) / dt - 0.5));
-    float last = min(count, ceil((brick.y - tNear) / dt - 0.5)); // not one of the brick's
-    vec3 dp = direction * dt;
-    vec3 p = origin + direction * (tNear + 0.5 * dt);
-    float stepUnits = dt * length(frameToUnits * direction);
+    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
+#ifdef SKIPPING
+    brick = occupiedPart(origin, direction, max(tNear, brick.x), min(tFar, brick.y));
+#endif
+    float perDepth = count / (tFar - tNear);
+    float i = max(0.0, ceil((brick.x - tNear) * perDepth - 0.5));
+    float last = min(count, ceil((brick.y - tNear) * perDepth - 0.5)); // not one of the brick's
+    vec3 rate = VOXEL_LENGTH * direction * dt;
+    float units = dt * length(frameToUnits * direction);
     vec3 color = vec3(0.0);
     float transmittance = 1.0;
-    for (float i = first; i < last; i += 1.0) {
-        vec4 c = classify(p + i * dp);
+    if (homogeneous && i < last) {
+        units *= last - i;
+        last = i + 1.0;
+    }
+    float t = tNear + (i + 0.5) * dt;
+    vec3 place = placeOf(origin + t * direction);
+    int steps = int(last - i);
+    if (steps > 0) do {
+        vec4 c = classify(place);
 #ifdef SHADING
-        c = lit(c, origin, direction, tNear + (i + 0.5) * dt);
+        c = lit(c, place, t);
 #endif
 #ifdef PAINTED
-        c.rgb = painted(c.rgb, p + i * dp);
+        c.rgb = painted(c.rgb, origin + t * direction);
 #endif
-        float through = exp2(-c.a * stepUnits);
-        color += transmittance * (1.0 - through) * c.rgb;
-        transmittance *= through;
-        if (transmittance < OPAQUE_ENOUGH) break;
-    }
+        t += dt;
+        COUNT_SAMPLE
+        float next = transmittance * exp2(-c.a * units);
+        color += (transmittance - next) * c.rgb;
+        transmittance = next;
+        place += rate;
+    } while (--steps > 0 && transmittance > OPAQUE_ENOUGH);
     return vec4(color, 1.0 - transmittance);
 }
 #endif
@@ -344,10 +412,19 @@ void main()
     }
     if (nearer >= 0.0) tNear = max(tNear, rayAt(nearer));
 #endif
+#ifdef SHADING
+    vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
+    originEye = rayOriginEye * window;
+    directionEye = rayDirectionEye * window;
+    towardsEye = -normalize(directionEye);
+#endif
 #ifdef SLOTS
     compositeSurfaces(origin, direction, tNear, tFar, brick);
 #else
     if (!(max(tNear, brick.x) < min(tFar, brick.y))) discard;
     fragColor = light(origin, direction, tNear, tFar, brick);
+#endif
+#ifdef COUNT_SAMPLES
+    fragColor = vec4(sampleCount, 0.0, 0.0, 0.0);
 #endif
 }

@@ -28,24 +28,29 @@ void main()
     float layer = spacing / max(abs(dot(surfaceNormal, direction)), 1e-12);
 #endif
     float units = layer * length(frameToUnits * direction);
+#ifdef VOXELS
+    vec3 place = placeOf(voxelCoordinate);
+#else
+    vec3 place = voxelCoordinate;
+#endif
 #if defined(MAXIMUM) || defined(MINIMUM)
 #ifdef RGBA
-    vec4 texel = voxelAt(voxelCoordinate);
+    vec4 texel = voxelAt(place);
     fragColor = vec4(texel.rgb * texel.a, texel.a);
 #else
-    fragColor = vec4(voxelAt(voxelCoordinate));
+    fragColor = vec4(voxelAt(place));
 #endif
 #elif defined(AVERAGE) || defined(SUM)
-    fragColor = vec4(voxelAt(voxelCoordinate) * units, units, 0.0, 0.0);
+    fragColor = vec4(voxelAt(place) * units, units, 0.0, 0.0);
 #else
 #ifdef PREINTEGRATED
     // The layer's own ends; one frame unit of the ray is `direction`.
-    vec3 halfLayer = 0.5 * layer * direction;
-    float entry0 = tableEntry(voxelCoordinate - halfLayer);
-    float entry1 = tableEntry(voxelCoordinate + halfLayer);
+    vec3 halfLayer = 0.5 * layer * direction * VOXEL_LENGTH;
+    float entry0 = tableEntry(place - halfLayer);
+    float entry1 = tableEntryAfter(entry0, place + halfLayer);
     vec4 c = classifyRun(entry0, tableIntegral(entry0), entry1, tableIntegral(entry1));
 #else
-    vec4 c = classify(voxelCoordinate);
+    vec4 c = classify(place);
 #endif
 #ifdef VERTEX_COLORS
 #ifdef VOXELS
@@ -56,7 +61,7 @@ void main()
 #endif
 #ifdef SHADING
     vec3 directionEye = rayDirectionEye * vec3(gl_FragCoord.xy - windowCenter, 1.0);
-    c.rgb = shade(c.rgb, voxelCoordinate, eyePosition, -normalize(directionEye));
+    c.rgb = shade(c.rgb, place, eyePosition, -normalize(directionEye));
 #endif
 #ifdef PAINTED
     c.rgb = painted(c.rgb, framePosition);

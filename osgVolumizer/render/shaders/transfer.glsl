@@ -38,14 +38,14 @@ void addSample(ivec3 i, float weight, inout vec4 sum)
 }
 #endif
 
-vec4 classify(vec3 voxelCoordinate)
+vec4 classify(vec3 place)
 {
 #ifndef VOXELS
     return vec4(1.0, 1.0, 1.0, 1.0);
 #elif defined(BEFORE)
     ivec3 cell;
     vec3 f;
-    cellAt(voxelCoordinate, cell, f);
+    cellAt(place, cell, f);
     vec4 sum = vec4(0.0);
 #ifdef CUBIC
     vec4 wx = cubicWeights(f.x), wy = cubicWeights(f.y), wz = cubicWeights(f.z);
@@ -64,17 +64,27 @@ vec4 classify(vec3 voxelCoordinate)
 #endif
     return sum.a > 0.0 ? vec4(max(sum.rgb, 0.0) / sum.a, sum.a) : vec4(0.0);
 #else
-    return classifyTexel(voxelAt(voxelCoordinate));
+    return classifyTexel(voxelAt(place));
 #endif
 }
 
 #ifdef PREINTEGRATED
 uniform vec4 tableLow, tableHigh; // extinction times colour, extinction: beyond the ends
 
-// The entry nearest to the value at a point; beyond the table's ends too.
-float tableEntry(vec3 voxelCoordinate)
+// The entry nearest to the value at a place; beyond the table's ends too.
+float tableEntry(vec3 place)
 {
-    return floor(voxelAt(voxelCoordinate) * valueToEntry.x + valueToEntry.y + 0.5);
+    return floor(voxelAt(place) * valueToEntry.x + valueToEntry.y + 0.5);
+}
+
+// The same, but not equal to the one before where integrals alone tell what lies between.
+float tableEntryAfter(float before, vec3 place)
+{
+    float entry = tableEntry(place);
+#ifndef SHORT_RUNS
+    entry += float(entry == before);
+#endif
+    return entry;
 }
 
 // The table's integral from its first entry to another.
@@ -89,8 +99,10 @@ vec4 tableIntegral(float entry)
 vec4 classifyRun(float entry0, vec4 integral0, float entry1, vec4 integral1)
 {
     float run = entry1 - entry0;
+#ifdef SHORT_RUNS
     // In a short run the table is as good, and a difference of integrals would lose its digits.
     if (abs(run) <= 4.0) return entryAt(0.5 * (entry0 + entry1));
+#endif
     vec4 mean = max((integral1 - integral0) / run, 0.0);
     return vec4(mean.rgb / max(mean.a, 1e-12), mean.a);
 }

@@ -18,8 +18,12 @@ uniform vec3 textureOffset;
 #endif
 
 #ifdef FETCH
-// Voxel coordinate -> coordinate in the samples of the brick. The offset is a whole number.
-vec3 brickCoordinate(vec3 voxelCoordinate)
+// Places in the brick are coordinates of its samples. The offset is a whole number.
+#define VOXEL_LENGTH vec3(1.0)
+#define FIRST_PLACE vec3(0.0)
+#define LAST_PLACE vec3(textureSize(voxels, 0) - 1)
+
+vec3 placeOf(vec3 voxelCoordinate)
 {
     return voxelCoordinate - round(0.5 - textureOffset * vec3(textureSize(voxels, 0)));
 }
@@ -29,14 +33,21 @@ TEXEL texelAt(ivec3 i)
     return CHANNELS(texelFetch(voxels, clamp(i, ivec3(0), textureSize(voxels, 0) - 1), 0));
 }
 
-// The samples about a point, and the point's place between them.
-void cellAt(vec3 voxelCoordinate, out ivec3 cell, out vec3 place)
+// The samples about a place, and where it is between them.
+void cellAt(vec3 place, out ivec3 cell, out vec3 f)
 {
-    vec3 p = clamp(brickCoordinate(voxelCoordinate), vec3(0.0), vec3(textureSize(voxels, 0) - 1));
+    vec3 p = clamp(place, FIRST_PLACE, LAST_PLACE);
     vec3 low = floor(p);
     cell = ivec3(low);
-    place = p - low;
+    f = p - low;
 }
+#else
+// Places in the brick are texture coordinates: marching in them saves a sixth of the time on llvmpipe.
+#define VOXEL_LENGTH textureScale
+#define FIRST_PLACE (0.5 / vec3(textureSize(voxels, 0)))
+#define LAST_PLACE (1.0 - FIRST_PLACE)
+
+vec3 placeOf(vec3 voxelCoordinate) { return voxelCoordinate * textureScale + textureOffset; }
 #endif
 
 #ifdef CUBIC
@@ -54,15 +65,15 @@ TEXEL cubicRow(ivec3 i, vec4 w)
 }
 #endif
 
-// The voxels' value at a point, as a texel.
-TEXEL voxelAt(vec3 voxelCoordinate)
+// The voxels' value at a place, as a texel.
+TEXEL voxelAt(vec3 place)
 {
 #if defined(NEAREST)
-    return texelAt(ivec3(floor(brickCoordinate(voxelCoordinate) + 0.5)));
+    return texelAt(ivec3(floor(place + 0.5)));
 #elif defined(CUBIC)
     ivec3 cell;
     vec3 f;
-    cellAt(voxelCoordinate, cell, f);
+    cellAt(place, cell, f);
     vec4 wx = cubicWeights(f.x), wy = cubicWeights(f.y), wz = cubicWeights(f.z);
     TEXEL sum = TEXEL(0.0);
     for (int k = 0; k < 4; ++k)
@@ -71,14 +82,14 @@ TEXEL voxelAt(vec3 voxelCoordinate)
 #elif defined(EXACT)
     ivec3 cell;
     vec3 f;
-    cellAt(voxelCoordinate, cell, f);
+    cellAt(place, cell, f);
     TEXEL x00 = mix(texelAt(cell), texelAt(cell + ivec3(1, 0, 0)), f.x);
     TEXEL x10 = mix(texelAt(cell + ivec3(0, 1, 0)), texelAt(cell + ivec3(1, 1, 0)), f.x);
     TEXEL x01 = mix(texelAt(cell + ivec3(0, 0, 1)), texelAt(cell + ivec3(1, 0, 1)), f.x);
     TEXEL x11 = mix(texelAt(cell + ivec3(0, 1, 1)), texelAt(cell + ivec3(1, 1, 1)), f.x);
     return mix(mix(x00, x10, f.y), mix(x01, x11, f.y), f.z);
 #else
-    return CHANNELS(texture(voxels, voxelCoordinate * textureScale + textureOffset));
+    return CHANNELS(texture(voxels, place));
 #endif
 }
 #endif

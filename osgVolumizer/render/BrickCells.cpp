@@ -1,0 +1,201 @@
+#include "BrickCells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+// Keys's kernel overshoots: the weights of one sign sum up to ((5/4)^3 + 1)/2 in three dimensions.
+constexpr double CUBIC_OVERSHOOT = 0.5 * (1.25 * 1.25 * 1.25 - 1.0);
+
+int cellSizeFor(const glm::ivec3& samples)
+{
+    return std::max({samples.x, samples.y, samples.z}) > 129 ? 16 : 8;
+}
+
+core::VoxelView viewOf(const Voxels& voxels, std::int64_t brick, const Voxels::Block& block)
+{
+    core::VoxelView view;
+    view.data = block.data;
+    view.type = voxels.getType();
+    view.size = voxels.getLayout().brick(brick).samples.size();
+    view.components = voxels.getComponents();
+    return view;
+}
+
+// The component that decides what shows: the value, or alpha.
+int shownComponent(const Voxels& voxels)
+{
+    return voxels.getComponents() == 4 ? 3 : 0;
+}
+
+osg::ref_ptr<osg::Texture3D> makeTexture(const glm::ivec3& count,
+                                         const std::vector<std::uint8_t>& occupied)
+{
+    const std::vector<std::uint8_t> distances = core::chebyshevDistance(count, occupied);
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(count.x, count.y, count.z, GL_RED, GL_UNSIGNED_BYTE, 1);
+    std::copy(distances.begin(), distances.end(), image->data());
+    osg::ref_ptr<osg::Texture3D> texture = new osg::Texture3D(image);
+    texture->setInternalFormat(GL_R8);
+    texture->setResizeNonPowerOfTwoHint(false);
+    texture->setUnRefImageDataAfterApply(false);
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
+    for (auto axis : {osg::Texture::WRAP_S, osg::Texture::WRAP_T, osg::Texture::WRAP_R})
+        texture->setWrap(axis, osg::Texture::CLAMP_TO_EDGE);
+    texture->setDataVariance(osg::Object::STATIC);
+    return texture;
+}
+
+// The part of an axis, in samples, between which something shows: empty where nothing does.
+glm::dvec2 shownPart(const std::vector<core::ValueRange>& layers, bool cubic,
+                     const std::function<bool(double, double)>& shows)
+{
+    const int gaps = std::max(static_cast<int>(layers.size()) - 1, 1), support = cubic ? 1 : 0;
+    glm::dvec2 part(gaps, 0.0);
+    for (int gap = 0; gap < gaps; ++gap) {
+        core::ValueRange range;
+        const int last = std::min(gap + 1 + support, static_cast<int>(layers.size()) - 1);
+        for (int i = std::max(gap - support, 0); i <= last; ++i)
+            range.expand(layers[static_cast<std::size_t>(i)]);
+        if (range.empty() || !shows(range.low, range.high)) continue;
+        part = {std::min(part.x, double(gap)), gap + 1.0};
+    }
+    return part;
+}
+
+core::Box3d shownBox(const core::LayerRanges& layers, const core::BrickPlace& place, bool cubic,
+                     const std::function<bool(double, double)>& shows)
+{
+    core::Box3d box;
+    for (int axis = 0; axis < 3; ++axis) {
+        const glm::dvec2 part = shownPart(layers.axis[axis], cubic, shows);
+        box.min[axis] = place.samples.min[axis] + part.x;
+        box.max[axis] = place.samples.min[axis] + part.y;
+    }
+    return intersection(box, place.clipBox);
+}
+
+// Cells in the box, and how many of them are occupied.
+void countCells(const core::CellGrid& grid, const std::vector<std::uint8_t>& occupied,
+                BrickCells& cells)
+{
+    const glm::dvec3 low = (cells.box.min - grid.originVoxel) / double(grid.cellSize);
+    const glm::dvec3 high = (cells.box.max - grid.originVoxel) / double(grid.cellSize);
+    const glm::ivec3 first = glm::max(glm::ivec3(glm::floor(low)), glm::ivec3(0));
+    const glm::ivec3 end = glm::min(glm::ivec3(glm::ceil(high)), grid.count);
+    for (int z = first.z; z < end.z; ++z)
+        for (int y = first.y; y < end.y; ++y)
+            for (int x = first.x; x < end.x; ++x) {
+                ++cells.cellCount;
+                cells.occupiedCount += occupied[grid.index(x, y, z)] != 0;
+            }
+}
+
+std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, std::int64_t brick,
+                                               const core::CellGrid& grid,
+                                               const core::LayerRanges& layers,
+                                               const OccupancyQuery& query)
+{
+    auto result = std::make_shared<BrickCells>();
+    const auto shows = [&](double low, double high) {
+        return showsValues(voxels, query, low, high);
+    };
+    result->box = shownBox(layers, voxels.getLayout().brick(brick), query.cubic, shows);
+    if (result->box.empty()) return result;
+    const std::vector<std::uint8_t> occupied = core::occupiedCells(grid, shows);
+    countCells(grid, occupied, *result);
+    const auto range = std::minmax_element(grid.low.begin(), grid.low.end());
+    const float highest = *std::max_element(grid.high.begin(), grid.high.end());
+    result->homogeneous = voxels.getComponents() == 1 && *range.first == highest;
+    result->origin = glm::vec3(grid.originVoxel);
+    result->cellSize = static_cast<float>(grid.cellSize);
+    result->texture = makeTexture(grid.count, occupied);
+    return result;
+}
+
+} // namespace
+
+osg::Texture3D* occupiedEverywhere()
+{
+    static const osg::ref_ptr<osg::Texture3D> texture = makeTexture(glm::ivec3(1), {255});
+    return texture.get();
+}
+
+bool showsValues(const Voxels& voxels, const OccupancyQuery& query, double low, double high)
+{
+    const double overshoot = query.cubic ? CUBIC_OVERSHOOT * (high - low) : 0.0;
+    low -= overshoot;
+    high += overshoot;
+    if (voxels.getComponents() != 1) return high > 0.0;
+    const osg::Vec2d range = voxels.getRange();
+    const double a = (low - range.x()) / (range.y() - range.x());
+    const double b = (high - range.x()) / (range.y() - range.x());
+    if (query.isosurface) return a <= query.isoFraction && query.isoFraction <= b;
+    return query.table->shows(a, b);
+}
+
+std::shared_ptr<const BrickCells> CellCache::get(const Voxels& voxels, std::int64_t brick,
+                                                 const OccupancyQuery& query)
+{
+    const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
+    const bool byTable = voxels.getComponents() == 1 && !query.isosurface;
+    const Key key{byTable ? query.table->id : 0, query.cubic, query.isosurface,
+                  query.isosurface ? query.isoFraction : 0.0};
+    std::lock_guard<std::mutex> lock(_mutex);
+    Brick& entry = _bricks[brick];
+    if (entry.modifiedCount != modified || entry.layoutCount != layout)
+        entry = {modified, layout, nullptr, nullptr, nullptr, {}};
+    const auto found = std::find_if(entry.cells.begin(), entry.cells.end(),
+                                    [&key](const auto& c) { return c.first == key; });
+    if (found != entry.cells.end()) {
+        entry.cells.splice(entry.cells.begin(), entry.cells, found);
+        return found->second;
+    }
+    if (!scan(voxels, brick, query.cubic, entry)) return nullptr;
+    const core::CellGrid& grid = *(query.cubic ? entry.cubic : entry.linear);
+    entry.cells.emplace_front(key, findOccupied(voxels, brick, grid, *entry.layers, query));
+    if (entry.cells.size() > CAPACITY) entry.cells.pop_back();
+    return entry.cells.front().second;
+}
+
+bool CellCache::scan(const Voxels& voxels, std::int64_t brick, bool cubic, Brick& entry)
+{
+    auto& grid = cubic ? entry.cubic : entry.linear;
+    if (grid && entry.layers) return grid->cellCount() > 0;
+    const Voxels::Block block = voxels.getBrick(brick);
+    if (!block.data) return false;
+    const core::VoxelView view = viewOf(voxels, brick, block);
+    const int component = shownComponent(voxels);
+    const glm::dvec3 origin(voxels.getLayout().brick(brick).samples.min);
+    grid = std::make_shared<core::CellGrid>(core::scanCells(
+        view, cellSizeFor(view.size), origin,
+        cubic ? core::FilterSupport::CUBIC : core::FilterSupport::LINEAR, component));
+    if (!entry.layers)
+        entry.layers = std::make_shared<core::LayerRanges>(core::scanLayers(view, component));
+    return grid->cellCount() > 0;
+}
+
+void CellCache::resizeGLObjectBuffers(unsigned int maximum)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (auto& brick : _bricks)
+        for (auto& cells : brick.second.cells)
+            if (cells.second->texture) cells.second->texture->resizeGLObjectBuffers(maximum);
+}
+
+void CellCache::releaseGLObjects(osg::State* state) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& brick : _bricks)
+        for (const auto& cells : brick.second.cells)
+            if (cells.second->texture) cells.second->texture->releaseGLObjects(state);
+}
+
+} // namespace render
+} // namespace osgVolumizer
