@@ -490,6 +490,28 @@ TEST(PolygonizeProperty, AreasOfSliversAddUpInDoublePrecision)
     }
 }
 
+TEST(PolygonizeProperty, DepthsThatDifferByAlmostNothingAreHarmless)
+{
+    // 1e-310 of a layer: its reciprocal overflows.
+    TetraSet set = makeBox(glm::dvec3(0.0), glm::dvec3(1.0));
+    const auto first = static_cast<TetraSet::Index>(set.vertices.size());
+    set.vertices.resize(first + 4);
+    for (TetraSet::Index i = 0; i < 4; ++i) {
+        set.vertices.setPosition(first + i, {i == 1, i == 2, i == 3 ? 1e-310 : 0.0});
+        set.indices.push_back(first + i);
+    }
+    for (const auto space : {SamplingSpace::OBJECT, SamplingSpace::PRIMITIVE}) {
+        SamplingParameters p;
+        p.space = space;
+        View view; // depth 0 in the plane z = 0
+        view.projection = glm::ortho(-1.0, 1.0, -1.0, 1.0, -1.0, 1.0);
+        PolygonizedFaces out;
+        ASSERT_TRUE(polygonize(set, {}, view, p, out).ok());
+        expectSound(out);
+        EXPECT_GE(out.faces.faceCount(), 5u);
+    }
+}
+
 TEST(PolygonizeProperty, AnyNumberOfSurfacesInOneTetrahedron)
 {
     // More than the lists of a block can number: the general way takes over.

@@ -139,8 +139,8 @@ INSTANTIATE_TEST_SUITE_P(Modes, Stereo,
                          ::testing::Values(osg::DisplaySettings::LEFT_EYE,
                                            osg::DisplaySettings::RIGHT_EYE));
 
-// Each half shows one eye, squeezed to half the window's size. Not run: OSG draws the left eye alone into
-// a camera with a framebuffer object, and a window needs an X server.
+// Each half shows one eye, squeezed to half the window's size. Not run: OSG draws the left eye
+// alone into a camera with a framebuffer object, and a window needs an X server.
 TEST_F(MergeView, DISABLED_SplitStereoShowsBothEyes)
 {
     for (const auto mode :
