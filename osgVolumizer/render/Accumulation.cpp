@@ -35,6 +35,11 @@ osg::ref_ptr<osg::Texture2D> makeTarget(int width, int height, GLenum internalFo
 
 osg::ref_ptr<osg::Texture2D> makeDepth(int width, int height, GLenum format)
 {
+    if (format == GL_DEPTH32F_STENCIL8)
+        return makeTarget(width, height, format, GL_DEPTH_STENCIL_EXT,
+                          GL_FLOAT_32_UNSIGNED_INT_24_8_REV);
+    if (format == GL_DEPTH24_STENCIL8_EXT)
+        return makeTarget(width, height, format, GL_DEPTH_STENCIL_EXT, GL_UNSIGNED_INT_24_8_EXT);
     return makeTarget(width, height, format, GL_DEPTH_COMPONENT,
                       format == GL_DEPTH_COMPONENT32F ? GL_FLOAT : GL_UNSIGNED_INT);
 }
@@ -75,11 +80,15 @@ GLint attachmentBits(const ContextResources& resources, GLint framebuffer, GLenu
     return bits;
 }
 
-// As precise as the framebuffer's own depth, so that equal depths stay equal.
-GLenum depthFormatOfFramebuffer(const ContextResources& resources, GLint framebuffer)
+// As precise as the framebuffer's own depth, so that equal depths stay equal; of several samples
+// one is got only by a blit between like formats.
+GLenum depthFormatOfFramebuffer(const ContextResources& resources, GLint framebuffer, bool samples)
 {
     const GLint bits = attachmentBits(resources, framebuffer, GL_DEPTH_ATTACHMENT_EXT, GL_DEPTH,
                                       GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE);
+    if (samples && attachmentBits(resources, framebuffer, GL_STENCIL_ATTACHMENT_EXT, GL_STENCIL,
+                                  GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE) > 0)
+        return bits > 24 ? GL_DEPTH32F_STENCIL8 : GL_DEPTH24_STENCIL8_EXT;
     return bits > 24 ? GL_DEPTH_COMPONENT32F : GL_DEPTH_COMPONENT24;
 }
 
@@ -281,7 +290,7 @@ LayerBuffers& Accumulation::layerBuffers(osg::State& state)
 
 bool Accumulation::needsTarget(const ContextResources& resources) const
 {
-    return _targetRequired ||
+    return _targetRequired || _sampleBuffers > 0 ||
            attachmentBits(resources, _drawFramebuffer, GL_COLOR_ATTACHMENT0_EXT, GL_BACK_LEFT,
                           GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE) < _settings.bits;
 }
@@ -289,7 +298,6 @@ bool Accumulation::needsTarget(const ContextResources& resources) const
 void Accumulation::begin(osg::RenderInfo& renderInfo)
 {
     osg::State& state = *renderInfo.getState();
-    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const std::shared_ptr<ContextResources> resources = contextResources(state);
     AccumulationBuffers& buffers = resources->accumulation;
     const AccumulationSettings& s = _settings;
@@ -298,29 +306,59 @@ void Accumulation::begin(osg::RenderInfo& renderInfo)
     glGetIntegerv(GL_SAMPLE_BUFFERS, &_sampleBuffers);
 
     ensureDepth(buffers, s.x + s.width, s.y + s.height,
-                depthFormatOfFramebuffer(*resources, _drawFramebuffer));
-    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
-    bindForCopy(state, *buffers.opaqueDepth);
-    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, s.x, s.y, s.x, s.y, s.width, s.height);
+                depthFormatOfFramebuffer(*resources, _drawFramebuffer, _sampleBuffers > 0));
+    copyOpaqueDepth(state, buffers);
     if (needsTarget(*resources)) {
         ensureTarget(state, buffers, colorFormatOf(s.bits, resources->limits));
-        copyColor(state, buffers);
+        copyToTarget(state, buffers);
         _redirected = true;
     }
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
 }
 
-void Accumulation::copyColor(osg::State& state, AccumulationBuffers& buffers)
+void Accumulation::blitFrom(osg::GLExtensions& gl, GLuint from, GLuint to, GLbitfield what) const
+{
+    const AccumulationSettings& s = _settings;
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, from);
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, to);
+    gl.glBlitFramebuffer(s.x, s.y, s.x + s.width, s.y + s.height, s.x, s.y, s.x + s.width,
+                         s.y + s.height, what, GL_NEAREST);
+}
+
+void Accumulation::copyOpaqueDepth(osg::State& state, AccumulationBuffers& buffers)
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const AccumulationSettings& s = _settings;
     const GLuint source = static_cast<GLuint>(_drawFramebuffer);
+    if (_sampleBuffers == 0) {
+        gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, source);
+        bindForCopy(state, *buffers.opaqueDepth);
+        glCopyTexSubImage2D(GL_TEXTURE_2D, 0, s.x, s.y, s.x, s.y, s.width, s.height);
+        return;
+    }
+    const GLuint depth = textureName(state, *buffers.opaqueDepth);
+    if (!buffers.resolveFramebuffer) gl.glGenFramebuffers(1, &buffers.resolveFramebuffer);
+    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.resolveFramebuffer);
+    gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth, 0);
+    glDrawBuffer(GL_NONE);
+    glReadBuffer(GL_NONE);
+    blitFrom(gl, source, buffers.resolveFramebuffer, GL_DEPTH_BUFFER_BIT);
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, source);
+}
+
+void Accumulation::copyToTarget(osg::State& state, AccumulationBuffers& buffers)
+{
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const AccumulationSettings& s = _settings;
+    const GLuint source = static_cast<GLuint>(_drawFramebuffer);
+    if (_sampleBuffers > 0) {
+        blitFrom(gl, source, buffers.framebuffer, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        return;
+    }
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, source);
     bindForCopy(state, *buffers.depth);
     glCopyTexSubImage2D(GL_TEXTURE_2D, 0, s.x, s.y, s.x, s.y, s.width, s.height);
-    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, buffers.framebuffer);
-    gl.glBlitFramebuffer(s.x, s.y, s.x + s.width, s.y + s.height, s.x, s.y, s.x + s.width,
-                         s.y + s.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    blitFrom(gl, source, buffers.framebuffer, GL_COLOR_BUFFER_BIT);
 }
 
 void Accumulation::end(osg::RenderInfo& renderInfo)
@@ -368,10 +406,7 @@ void Accumulation::writeBack(osg::State& state, ContextResources& resources)
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const AccumulationBuffers& buffers = resources.accumulation;
     const AccumulationSettings& s = _settings;
-    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, buffers.framebuffer);
-    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
-    gl.glBlitFramebuffer(s.x, s.y, s.x + s.width, s.y + s.height, s.x, s.y, s.x + s.width,
-                         s.y + s.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    blitFrom(gl, buffers.framebuffer, static_cast<GLuint>(_drawFramebuffer), GL_COLOR_BUFFER_BIT);
     if (!_depthKept) return;
     // Not a blit, which would need the framebuffer's very format.
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth);

@@ -23,8 +23,9 @@ struct AccumulationSettings
 /// One pass over a transparent bin's leaves. begin() takes a copy of the opaque scene's depth for
 /// segments to end at, and, where the framebuffer has fewer bits than asked for, redirects drawing
 /// to a float target that starts as a copy of the framebuffer, so that any blend function still
-/// finds the colours it expects. end() writes the result back. Both run in the draw thread, in one
-/// context.
+/// finds the colours it expects. So it is with several samples a pixel: colours are resolved,
+/// depths are those of one sample, and what is drawn between has one; edges of opaque geometry stay
+/// smooth. end() writes the result back. Both run in the draw thread, in one context.
 class Accumulation : public osg::Referenced
 {
 public:
@@ -50,7 +51,9 @@ public:
 
 private:
     bool needsTarget(const ContextResources& resources) const;
-    void copyColor(osg::State& state, AccumulationBuffers& buffers);
+    void copyOpaqueDepth(osg::State& state, AccumulationBuffers& buffers);
+    void copyToTarget(osg::State& state, AccumulationBuffers& buffers);
+    void blitFrom(osg::GLExtensions& gl, GLuint from, GLuint to, GLbitfield what) const;
     void writeBack(osg::State& state, ContextResources& resources);
 
     AccumulationSettings _settings;

@@ -41,8 +41,9 @@ void deleteNames(ContextResources& resources, osg::GLExtensions& gl)
     resources.indices.release(gl);
     AccumulationBuffers& buffers = resources.accumulation;
     LayerBuffers& layers = buffers.layers;
-    for (GLuint* name : {&buffers.framebuffer, &buffers.layerFramebuffer, &layers.sortedFramebuffer,
-                         &layers.rankFramebuffer, &resources.rays.framebuffer})
+    for (GLuint* name :
+         {&buffers.framebuffer, &buffers.layerFramebuffer, &buffers.resolveFramebuffer,
+          &layers.sortedFramebuffer, &layers.rankFramebuffer, &resources.rays.framebuffer})
         if (*name) gl.glDeleteFramebuffers(1, name);
     CaptureBuffers& capture = resources.capture;
     if (capture.queries[0]) {

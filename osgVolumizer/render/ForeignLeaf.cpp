@@ -155,6 +155,11 @@ std::optional<ForeignLeaf> ForeignLeaf::examine(osgUtil::RenderLeaf& leaf,
     if (!leaf._modelview || !leaf._projection || !leaf.getDrawable()) return std::nullopt;
     const osg::BoundingBox& bounds = leaf.getDrawable()->getBoundingBox();
     if (!bounds.valid() || !sameRays(*leaf._projection, projection)) return std::nullopt;
+    // Depth that grows towards the eye orders nothing of ours.
+    const osg::Depth* test = effectiveDepth(leaf._parent);
+    if (test &&
+        (test->getFunction() == osg::Depth::GREATER || test->getFunction() == osg::Depth::GEQUAL))
+        return std::nullopt;
     ForeignLeaf result(leaf);
     result._view = boxInView(bounds, *leaf._modelview, *leaf._projection);
     core::DepthInterval& depth = result._view.depth;

@@ -63,7 +63,8 @@ class ForeignLeaf
 {
 public:
     /// Nothing where the leaf cannot be ordered against volumes seen through `projection`: without
-    /// matrices, without bounds, or in another projection (but for near and far).
+    /// matrices, without bounds, with a depth test that farther fragments pass, or in another
+    /// projection (but for near and far).
     static std::optional<ForeignLeaf> examine(osgUtil::RenderLeaf& leaf,
                                               const osg::Matrixd& projection);
 

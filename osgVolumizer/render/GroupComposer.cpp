@@ -44,7 +44,7 @@ bool GroupComposer::prepare(VolumeInstance& instance, PreparedVolume& volume)
     volume.view = {toGlm(*instance.leaf->_modelview), toGlm(*instance.leaf->_projection)};
     if (instance.look->features.slab) return true;
     const bool mergeable = _group.volumes.size() > 1 || !_group.surfaces.empty();
-    volume.sliced.reset(new SlicedVolume);
+    volume.sliced = std::make_unique<SlicedVolume>();
     const Status status = volume.sliced->polygonize(instance, volume.view, mergeable);
     if (volume.sliced->polygonized()) ++_counts.polygonizations;
     if (!status) reportError(status);
@@ -162,6 +162,7 @@ void GroupComposer::splitSurfaces(const Region& region,
                                   const std::vector<core::ScheduledInterval>& intervals)
 {
     std::vector<core::DepthInterval> depths;
+    depths.reserve(intervals.size());
     for (const core::ScheduledInterval& interval : intervals)
         depths.push_back(interval.depth);
     for (std::size_t i = 0; i < region.surfaces.size(); ++i) {

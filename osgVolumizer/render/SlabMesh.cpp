@@ -42,7 +42,10 @@ BrickBatch batchOf(const SelectedBrick& brick)
     batch.brickMax = glm::vec3(brick.clipBox.max);
     batch.cells = brick.cells;
     batch.textureScale = brick.textureScale;
+    batch.brickMin = glm::vec3(brick.clipBox.min);
+    batch.brickMax = glm::vec3(brick.clipBox.max);
     batch.textureOffset = brick.textureOffset;
+    batch.cells = brick.cells;
     return batch;
 }
 

@@ -31,13 +31,13 @@ struct ProgramFeatures
     VolumeAppearance::RayFunction rayFunction = VolumeAppearance::COMPOSITE;
     bool shading = false;
     bool gradientTexture = false; ///< brick textures hold gradients besides values
-    bool skipping = false;        ///< leap over cells that show nothing
-    bool countSamples = false;    ///< draw the number of samples: see setSampleCounting()
     /// Slots of captured surfaces that are composited while marching, over all pixels of an area;
     /// multiple of 4. Expects opaqueDepth, one brick, and the whole depth of the volume.
     int slotCount = 0;
-    int paintCount = 0; ///< bricks of volumes that paint this one; no more than 4
-    int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
+    bool skipping = false;     ///< leap over cells that show nothing
+    bool countSamples = false; ///< draw the number of samples: see setSampleCounting()
+    int paintCount = 0;        ///< bricks of volumes that paint this one; no more than 4
+    int planeCount = 0;        ///< half-spaces that end the segment, besides the clip box
 
     /// Whether the rays' values are gathered in a target of their own, and drawn as one layer.
     bool gathers() const

@@ -165,7 +165,7 @@ Status readField(Tokens& tokens, const std::string& name, Record& record, std::u
     for (std::size_t k = 0; k < kindCount; ++k) {
         if (kind != kindName(k)) continue;
         Field::Value value = values[k];
-        const Status status = std::visit(ValueReader(tokens, name, count), value);
+        Status status = std::visit(ValueReader(tokens, name, count), value);
         if (status.ok()) record.add(name, std::move(value));
         return status;
     }
@@ -188,7 +188,7 @@ Status readFields(Tokens& tokens, Record& record)
         if (tokens.ended())
             return Status(ErrorCode::FILE_UNREADABLE, "there is no End after field " + previous);
         if (!isName(token)) return tooMany(previous, count);
-        const Status status = readField(tokens, token, record, count);
+        Status status = readField(tokens, token, record, count);
         if (!status.ok()) return status;
         previous = token;
         if (!tokens.next(token)) return cutShort(previous);
@@ -202,7 +202,7 @@ Status readFields(Tokens& tokens, Record& record)
 Status readText(osgDB::InputStream& is, Record& record)
 {
     Tokens tokens(is);
-    const Status status = readFields(tokens, record);
+    Status status = readFields(tokens, record);
     tokens.skip();
     return status;
 }

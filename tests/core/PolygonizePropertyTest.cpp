@@ -2,6 +2,7 @@
 
 #include "TestGeometry.h"
 #include "osgVolumizer/core/Parallel.h"
+#include "osgVolumizer/core/geometry/Orientation.h"
 #include "osgVolumizer/core/geometry/Solids.h"
 #include "osgVolumizer/core/geometry/TetraMesh.h"
 #include "osgVolumizer/core/sampling/Sample.h"
@@ -410,6 +411,55 @@ TEST(PolygonizeProperty, SliversNeitherTearNorOverlap)
     }
 }
 
+TEST(PolygonizeProperty, SliversAnywhereHaveTheOrientationOfTheirNeighbours)
+{
+    // Cells whose tetrahedra are split at points next to a face: as near as rounding lets them be,
+    // and on the inner side, in exact arithmetic. The rounded determinant of such a sliver has
+    // either sign.
+    std::mt19937 random(13);
+    std::uniform_real_distribution<double> u(0.1, 1.0);
+    for (int round = 0; round < 30; ++round) {
+        const TetraSet coarse = jitteredGrid(3, random, 0.16);
+        TetraSet set;
+        set.vertices = coarse.vertices;
+        std::size_t slivers = 0;
+        for (std::size_t t = 0; t < coarse.tetraCount(); ++t) {
+            const TetraSet::Index* v = &coarse.indices[4 * t];
+            glm::dvec3 p[4];
+            for (int k = 0; k < 4; ++k)
+                p[k] = coarse.vertices.position(v[k]);
+            const double a = u(random), b = u(random), c = u(random);
+            const glm::dvec3 inside =
+                (a * p[0] + b * p[1] + c * p[2]) / (a + b + c) + 1e-16 * (p[3] - p[0]);
+            const int sign = orientationSign(p[0], p[1], p[2], p[3]);
+            bool within = true;
+            for (int k = 0; k < 4; ++k) {
+                glm::dvec3 q[4] = {p[0], p[1], p[2], p[3]};
+                q[k] = inside;
+                within = within && orientationSign(q[0], q[1], q[2], q[3]) == sign;
+            }
+            if (!within) {
+                set.indices.insert(set.indices.end(), v, v + 4);
+                continue;
+            }
+            ++slivers;
+            const auto middle = static_cast<TetraSet::Index>(set.vertices.size());
+            set.vertices.values().insert(set.vertices.values().end(),
+                                         {inside.x, inside.y, inside.z});
+            for (int k = 0; k < 4; ++k)
+                for (int i = 0; i < 4; ++i)
+                    set.indices.push_back(i == k ? middle : v[i]);
+        }
+        EXPECT_GT(slivers, 10u);
+        SamplingParameters p;
+        p.periodVoxel = glm::dvec3(0.03);
+        PolygonizedFaces out;
+        ASSERT_TRUE(polygonize(set, {}, randomView(random, glm::dvec3(1.0)), p, out).ok());
+        expectSound(out);
+        expectWatertight(out, glm::dvec3(3.0));
+    }
+}
+
 TEST(PolygonizeProperty, AreasOfSliversAddUpInDoublePrecision)
 {
     /// Planes across a direction.
@@ -437,6 +487,28 @@ TEST(PolygonizeProperty, AreasOfSliversAddUpInDoublePrecision)
                 ASSERT_TRUE(sample(box, t, planes, {depth}, expected).ok());
             EXPECT_NEAR(cut.area(), expected.area(), 1e-12 * expected.area());
         }
+    }
+}
+
+TEST(PolygonizeProperty, DepthsThatDifferByAlmostNothingAreHarmless)
+{
+    // 1e-310 of a layer: its reciprocal overflows.
+    TetraSet set = makeBox(glm::dvec3(0.0), glm::dvec3(1.0));
+    const auto first = static_cast<TetraSet::Index>(set.vertices.size());
+    set.vertices.resize(first + 4);
+    for (TetraSet::Index i = 0; i < 4; ++i) {
+        set.vertices.setPosition(first + i, {i == 1, i == 2, i == 3 ? 1e-310 : 0.0});
+        set.indices.push_back(first + i);
+    }
+    for (const auto space : {SamplingSpace::OBJECT, SamplingSpace::PRIMITIVE}) {
+        SamplingParameters p;
+        p.space = space;
+        View view; // depth 0 in the plane z = 0
+        view.projection = glm::ortho(-1.0, 1.0, -1.0, 1.0, -1.0, 1.0);
+        PolygonizedFaces out;
+        ASSERT_TRUE(polygonize(set, {}, view, p, out).ok());
+        expectSound(out);
+        EXPECT_GE(out.faces.faceCount(), 5u);
     }
 }
 

@@ -217,4 +217,22 @@ TEST_F(PassThrough, DepthWritesReachTheFramebuffer)
     EXPECT_EQ(wrong, 0u);
 }
 
+// Depth that grows towards the eye cannot be merged, and is left alone.
+TEST_F(PassThrough, ReversedDepthTestsAreNotMerged)
+{
+    const osg::ref_ptr<osg::Group> scene = surfaces();
+    scene->addChild(volume());
+    support::SceneRenderer usual(scene, viewOf());
+    EXPECT_FALSE(usual.render().empty());
+    EXPECT_GT(usual.counters()["osgVolumizer surface pieces"], 0.0);
+    scene->getChild(0)->getOrCreateStateSet()->setAttributeAndModes(
+        new osg::Depth(osg::Depth::GREATER));
+    scene->getChild(1)->getOrCreateStateSet()->setAttributeAndModes(
+        new osg::Depth(osg::Depth::GEQUAL));
+    support::SceneRenderer reversed(scene, viewOf());
+    EXPECT_FALSE(reversed.render().empty());
+    EXPECT_EQ(reversed.counters()["osgVolumizer surface pieces"], 0.0);
+    EXPECT_EQ(reversed.glError(), 0u);
+}
+
 } // namespace

@@ -6,6 +6,7 @@
 
 #include <osgVolumizer/render/ContextResources.h>
 
+#include <osg/FrameBufferObject>
 #include <osgViewer/CompositeViewer>
 
 using namespace osgVolumizer;
@@ -138,7 +139,8 @@ INSTANTIATE_TEST_SUITE_P(Modes, Stereo,
                          ::testing::Values(osg::DisplaySettings::LEFT_EYE,
                                            osg::DisplaySettings::RIGHT_EYE));
 
-// Each half shows one eye, squeezed to half the window's size.
+// Each half shows one eye, squeezed to half the window's size. Not run: OSG draws the left eye
+// alone into a camera with a framebuffer object, and a window needs an X server.
 TEST_F(MergeView, DISABLED_SplitStereoShowsBothEyes)
 {
     for (const auto mode :
@@ -295,6 +297,115 @@ TEST_F(MergeView, ContextsComeAndGo)
         EXPECT_EQ(renderer.glError(), 0u);
         EXPECT_EQ(second.glError(), 0u);
     }
+}
+
+// The pictures that all others are compared with are right, and so is what each eye of a stereo
+// pair sees, mirrored or not.
+TEST_F(MergeView, AgreesWithTheOracle)
+{
+    const osg::ref_ptr<osg::DisplaySettings> settings =
+        stereoSettings(osg::DisplaySettings::LEFT_EYE);
+    for (const bool mirrored : {false, true}) {
+        for (const bool left : {true, false}) {
+            RenderOptions options = viewOf();
+            const Eye eye = eyeOf(*settings, options, left);
+            options.view = mirrored ? osg::Matrixd::scale(1, -1, 1) * eye.view : eye.view;
+            options.projection = eye.projection;
+            const Judged j = judge(_scene, options);
+            save(j, std::string("merge_view") + (mirrored ? "_mirrored" : "") +
+                        (left ? "_left" : "_right"));
+            EXPECT_LE(j.all.rmse, 4e-3);
+            EXPECT_LE(j.away.maximum, 4e-3);
+            EXPECT_GT(j.away.pixels, 800u);
+        }
+    }
+}
+
+/// A framebuffer with several samples a pixel, or one, bound while a camera draws, and its picture.
+struct SampledTarget : public osg::Camera::DrawCallback
+{
+    SampledTarget(const RenderOptions& options, GLsizei n)
+        : width(options.width), height(options.height), samples(n), picture(width, height)
+    {
+    }
+    void operator()(osg::RenderInfo& info) const override
+    {
+        osg::GLExtensions& gl = *info.getState()->get<osg::GLExtensions>();
+        if (!framebuffers[0]) {
+            gl.glGenFramebuffers(2, framebuffers);
+            for (const int i : {1, 0}) {
+                gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, framebuffers[i]);
+                const GLsizei n = i == 0 ? samples : 0;
+                for (const bool color : {true, false}) {
+                    GLuint buffer = 0;
+                    gl.glGenRenderbuffers(1, &buffer);
+                    gl.glBindRenderbuffer(GL_RENDERBUFFER_EXT, buffer);
+                    gl.glRenderbufferStorageMultisample(
+                        GL_RENDERBUFFER_EXT, n, color ? GL_RGBA32F_ARB : GL_DEPTH24_STENCIL8_EXT,
+                        width, height);
+                    gl.glFramebufferRenderbuffer(GL_FRAMEBUFFER_EXT,
+                                                 color ? GL_COLOR_ATTACHMENT0_EXT
+                                                       : GL_DEPTH_STENCIL_ATTACHMENT,
+                                                 GL_RENDERBUFFER_EXT, buffer);
+                }
+                EXPECT_EQ(gl.glCheckFramebufferStatus(GL_FRAMEBUFFER_EXT),
+                          GLenum(GL_FRAMEBUFFER_COMPLETE_EXT));
+            }
+        }
+        drawing = !drawing;
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, framebuffers[0]);
+        if (drawing) return;
+        gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, framebuffers[1]);
+        gl.glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
+                             GL_NEAREST);
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, framebuffers[1]);
+        glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, picture.pixels.data());
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, 0);
+    }
+
+    const int width, height;
+    const GLsizei samples;
+    mutable GLuint framebuffers[2] = {0, 0};
+    mutable bool drawing = false;
+    mutable FloatImage picture;
+};
+
+// Framebuffers with several samples a pixel: opaque edges stay smooth, the rest is as with one.
+TEST_F(MergeView, SeveralSamplesAPixel)
+{
+    const RenderOptions options = viewOf();
+    const auto pictureOf = [&options](osg::Node* scene, GLsizei samples) {
+        const osg::ref_ptr<SampledTarget> target = new SampledTarget(options, samples);
+        osg::ref_ptr<osg::Camera> nested = new osg::Camera;
+        nested->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+        nested->setRenderOrder(osg::Camera::PRE_RENDER);
+        nested->setViewport(0, 0, options.width, options.height);
+        nested->setClearColor(osg::Vec4());
+        nested->setViewMatrix(options.view);
+        nested->setProjectionMatrix(options.projection);
+        nested->setInitialDrawCallback(target);
+        nested->setFinalDrawCallback(target);
+        nested->addChild(scene);
+        support::SceneRenderer renderer(nested, options);
+        renderer.render();
+        EXPECT_EQ(renderer.glError(), 0u);
+        return target->picture;
+    };
+    // Nothing opaque: as with one sample.
+    const FloatImage translucent = alone(options.view, options.projection);
+    EXPECT_LE(support::compare(pictureOf(_scene.root(), 0), translucent).maximum, 1e-5);
+    EXPECT_LE(support::compare(pictureOf(_scene.root(), 4), translucent).maximum, 1e-5);
+    // With something opaque in the middle.
+    _scene.addMesh(sphereMesh({14, 10, 18}, 7.0, 48, 24), {0.9, 0.8, 0.1, 1.0}, true);
+    const FloatImage one = pictureOf(_scene.root(), 0), four = pictureOf(_scene.root(), 4);
+    support::savePicture(one, "merge_samples_one");
+    support::savePicture(four, "merge_samples_four");
+    // Silhouettes of the sphere differ, by what edges are smoothed. Near them depth at a sample's
+    // place is not that of the pixel's centre; nothing else differs.
+    const support::Mask away =
+        support::coveredPixels(oracle::awayFromSilhouettes(_scene.truth(), cameraOf(options), 3.0));
+    EXPECT_LE(support::compare(four, one, away).maximum, 4e-3);
+    EXPECT_GT(support::compare(four, one).maximum, 0.02);
 }
 
 // Closing a context frees what was made in it, wherever the scene has gone in the meantime.

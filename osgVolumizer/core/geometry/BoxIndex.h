@@ -84,7 +84,7 @@ private:
         for (int z = first[2]; z <= last[2]; ++z)
             for (int y = first[1]; y <= last[1]; ++y)
                 for (int x = first[0]; x <= last[0]; ++x) {
-                    const int box = _cells[static_cast<std::size_t>((z * ny + y) * nx + x)];
+                    const int box = _cells[(std::size_t(z) * ny + y) * nx + x];
                     if (box >= 0) f(box, !inside(min, max, _boxes[static_cast<std::size_t>(box)]));
                 }
     }

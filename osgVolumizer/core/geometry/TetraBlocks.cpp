@@ -1,6 +1,7 @@
 #include "TetraBlocks.h"
 
 #include "../LargePages.h"
+#include "Orientation.h"
 
 #include <glm/geometric.hpp>
 
@@ -87,11 +88,9 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
             }
             tetrahedra[i].v[k] = static_cast<std::uint8_t>(_local[v]);
         }
-        const glm::dvec3 a = set.vertices.position(source[0]);
-        const glm::dvec3 b = set.vertices.position(source[1]) - a;
-        const glm::dvec3 c = set.vertices.position(source[2]) - a;
-        const glm::dvec3 d = set.vertices.position(source[3]) - a;
-        if (glm::dot(glm::cross(b, c), d) < 0.0) std::swap(tetrahedra[i].v[0], tetrahedra[i].v[1]);
+        if (orientationSign(set.vertices.position(source[0]), set.vertices.position(source[1]),
+                            set.vertices.position(source[2]), set.vertices.position(source[3])) < 0)
+            std::swap(tetrahedra[i].v[0], tetrahedra[i].v[1]);
     }
     findEdges();
     const std::size_t stride = recordSize();

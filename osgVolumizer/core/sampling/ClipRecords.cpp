@@ -85,13 +85,18 @@ void RecordPolygon::clipPlane(int field, const Plane& plane)
         0.0, above, [](double*) {});
 }
 
-void RecordPolygon::clipBox(int field, const Box3d& box)
+Box3d RecordPolygon::extent(int field) const
 {
-    Box3d extent;
+    Box3d box;
     for (const Corner& c : _corners) {
         const double* r = at(c.record) + field;
-        extent.expand({r[0], r[1], r[2]});
+        box.expand({r[0], r[1], r[2]});
     }
+    return box;
+}
+
+void RecordPolygon::clipBox(int field, const Box3d& box, const Box3d& extent)
+{
     for (int a = 0; a < 3; ++a) {
         // What lies in a plane of the box as a whole belongs to the upper side. A polygon that ends
         // at a plane is not cut by it, also where rounding has laid all of a remnant into the

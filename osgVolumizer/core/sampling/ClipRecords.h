@@ -73,7 +73,10 @@ public:
     /// first non-zero coordinate of the normal points to.
     void clipPlane(int field, const Plane& plane);
     /// Keeps the part in the half-open box; `field` is where the three coordinates are.
-    void clipBox(int field, const Box3d& box);
+    void clipBox(int field, const Box3d& box) { clipBox(field, box, extent(field)); }
+    /// The same where the extent is known.
+    void clipBox(int field, const Box3d& box, const Box3d& extent);
+    Box3d extent(int field) const;
 
 private:
     /// A vertex, and the line that carries the edge from it to the next.

@@ -1,5 +1,6 @@
 #include "Sample.h"
 
+#include "../geometry/Orientation.h"
 #include "ClipRecords.h"
 #include "Interpolate.h"
 #include "TetraCases.h"
@@ -85,9 +86,8 @@ Status sample(const TetraSet& set, std::size_t tetrahedron, const SurfaceFamily&
     const VertexFormat& format = vertices.format();
     TetraSet::Index t[4];
     std::copy_n(set.indices.begin() + static_cast<std::ptrdiff_t>(4 * tetrahedron), 4, t);
-    const glm::dvec3 a = vertices.position(t[0]);
-    if (glm::dot(glm::cross(vertices.position(t[1]) - a, vertices.position(t[2]) - a),
-                 vertices.position(t[3]) - a) < 0.0)
+    if (orientationSign(vertices.position(t[0]), vertices.position(t[1]), vertices.position(t[2]),
+                        vertices.position(t[3])) < 0)
         std::swap(t[0], t[1]);
     double depth[4];
     for (int i = 0; i < 4; ++i) {

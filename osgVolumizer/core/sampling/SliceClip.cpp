@@ -38,11 +38,7 @@ void clipFace(const SlicePlan& plan, int surface, double spacing, Slicer::Chunk&
     }
     const int field = plan.blocks->clipField();
     RecordPolygon& polygon = chunk.polygon;
-    Box3d extent;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const double* r = polygon.record(i) + field;
-        extent.expand({r[0], r[1], r[2]});
-    }
+    const Box3d extent = polygon.extent(field);
     polygon.save(chunk.whole);
     bool cut = false;
     plan.boxes->visit(extent.min, extent.max, [&](int brick, bool needsClipping) {
@@ -50,7 +46,7 @@ void clipFace(const SlicePlan& plan, int surface, double spacing, Slicer::Chunk&
         if (cut) polygon.restore(chunk.whole);
         cut = needsClipping;
         if (needsClipping)
-            polygon.clipBox(field, plan.boxes->boxes()[static_cast<std::size_t>(brick)]);
+            polygon.clipBox(field, plan.boxes->boxes()[static_cast<std::size_t>(brick)], extent);
         if (polygon.size() >= 3) append(plan, bin, spacing, chunk);
     });
 }
@@ -84,6 +80,7 @@ void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block, std::uint
         }
         last = std::max(1, static_cast<int>(std::ceil((high - low) * (1.0 - 1e-9))));
         scale = last / (high - low);
+        if (!std::isfinite(scale)) return; // too thin for layers of its own
         first = 0;
         for (double& v : f)
             v = (v - low) * scale;

@@ -4,10 +4,26 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdlib>
 
 namespace osgVolumizer {
 namespace core {
+
+namespace {
+
+std::atomic<Instructions> instructions{Instructions::AVX512};
+
+} // namespace
+
+void limitInstructions(Instructions most)
+{
+    instructions = most;
+}
+Instructions instructionLimit()
+{
+    return instructions.load(std::memory_order_relaxed);
+}
 
 // Most tetrahedra and edges meet none, one or two surfaces of a lattice that is as fine as they
 // are, and a branch on that number would be mispredicted half of the time. So two are always

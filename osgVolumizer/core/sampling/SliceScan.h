@@ -16,6 +16,16 @@
 namespace osgVolumizer {
 namespace core {
 
+/// What the inner loops may use of what the processor has: all, unless a test asks for less.
+enum class Instructions : int
+{
+    PLAIN,
+    AVX2,
+    AVX512
+};
+void limitInstructions(Instructions most);
+Instructions instructionLimit();
+
 /// What one face of each case adds to its bin: 4 indices where two vertices are on either side,
 /// else 3. The cases without a face do not occur.
 inline constexpr std::array<Slicer::Count, 16> FACE_COUNTS = [] {

@@ -130,7 +130,7 @@ OSGVOLUMIZER_AVX2 void emit(const Emission& in)
 bool available()
 {
     static const bool has = __builtin_cpu_supports("avx2");
-    return has;
+    return has && instructionLimit() >= Instructions::AVX2;
 }
 
 OSGVOLUMIZER_AVX2 PassedRange listLayers(const SlicePlan& plan, const double* record,

@@ -68,8 +68,8 @@ bool available()
         __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512vbmi") &&
         __builtin_cpu_supports("avx512vnni") && __builtin_cpu_supports("bmi2") &&
-        __builtin_cpu_supports("popcnt") && avx2::available();
-    return has;
+        __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("avx2");
+    return has && instructionLimit() >= Instructions::AVX512;
 }
 
 OSGVOLUMIZER_AVX512 void packPassed(const int* passed, Slicer::Chunk& chunk)

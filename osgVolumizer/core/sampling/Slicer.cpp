@@ -158,6 +158,7 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
         const std::size_t start = chunk.entryCount;
         const BlockFaces faces = countBlock(plan, chunk, block);
         chunk.blockFaces.push_back(faces);
+        if (faces.endEntry == start) continue;
         Count* counts = chunk.fast.data() +
                         static_cast<std::size_t>(faces.base - plan.firstSurface) * brickCount;
         const std::uint32_t* entry = chunk.entries.data() + start;

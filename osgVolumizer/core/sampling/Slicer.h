@@ -48,6 +48,24 @@ struct SlicePlan
     std::vector<Plane> visible;
 };
 
+/// Why doubles suffice, however thin a tetrahedron is. Which surfaces meet it is decided by one
+/// number per vertex, its layer coordinate, rounded once, by the same operations wherever the
+/// vertex is used; comparing that with k + 1/2 is exact (see surfacesPassed()). From these bits all
+/// else follows without arithmetic: the case of a tetrahedron, which of its edges carry points, and
+/// which pair of edges is joined in each of its faces. The last depends on the face's own three
+/// vertices, so the two tetrahedra at a face agree. The side on which faces are seen follows from
+/// the sign of the tetrahedron, which is exact (orientationSign()). A point is computed from the
+/// two ends of its edge, far to near, and lies between them (Between). So faces meet edge to edge,
+/// with one orientation, for slivers as for any other: rounding can move a surface, but not tear
+/// it.
+///
+/// How far: the layer coordinate is off by at most 8 u (|gradient| |p - corner| + |farDepth|) /
+/// spacing, u = 2^-53, which moves the surface by as many layers; a point on its edge by as much
+/// and 3 u of the edge's length. Areas of faces in double precision (sample()) add up to that of
+/// the cross section to 1e-12 of it. Here points are rounded to float at last, relative to the
+/// origin of the blocks: single faces are as accurate as that, but since they share their points,
+/// the vector areas of a surface add up to that of its outline.
+///
 /// Cuts blocks of tetrahedra in two passes: the first finds out which surfaces meet which
 /// tetrahedra and counts, the second writes points and faces to their final places. In a block
 /// every point is made once, on its edge, and shared by the faces around that edge. Tetrahedra that

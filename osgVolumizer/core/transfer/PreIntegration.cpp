@@ -118,6 +118,7 @@ private:
 std::vector<double> pieceEnds(const TransferFunction& function, int count, double low, double high)
 {
     std::vector<double> ends;
+    ends.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i)
         ends.push_back(valueOf(i, count, low, high));
     const auto& points = function.points();

@@ -14,7 +14,8 @@ namespace {
 /// where it can.
 double cutBefore(double start, int overlap)
 {
-    return overlap == 0 ? start - 0.5 : start + (overlap - 1) / 2;
+    const int half = (overlap - 1) / 2;
+    return overlap == 0 ? start - 0.5 : start + half;
 }
 
 std::int64_t bricksOnAxis(std::int64_t size, std::int64_t brick, int overlap, PartialBricks partial)

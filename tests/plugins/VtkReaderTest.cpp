@@ -1,0 +1,305 @@
+// Unstructured grids, as VTK writes them and as nobody should.
+
+#ifdef OSGVOLUMIZER_HAVE_VTK
+
+#include <osgVolumizer/Error.h>
+#include <osgVolumizer/VolumeAppearance.h>
+#include <osgVolumizer/VolumeGeometry.h>
+#include <osgVolumizer/core/geometry/TetraMesh.h>
+
+#include <support/GLTest.h>
+
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+using namespace osgVolumizer;
+
+namespace {
+
+// A wedge on a pyramid on a hexahedron, a voxel beside it that shares a face, a tetrahedron
+// beside that, and a triangle, which counts for nothing. Of volume 1 + 1/3 + 1/2 + 1 + 1/6 where
+// the wedge stands free.
+const std::string POINTS = "0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1  0.5 0.5 2  "
+                           "2 0 0  2 1 0  2 0 1  2 1 1  3 0 0  "
+                           "5 0 0  6 0 0  5 1 0  5 0 1  6 0 1  5 1 1";
+constexpr int POINT_COUNT = 20;
+const std::string CELLS[] = {"0 1 2 3 4 5 6 7",    "4 5 6 7 8",  "14 15 16 17 18 19",
+                             "1 9 2 10 5 11 6 12", "9 13 10 11", "0 1 2"};
+const int TYPES[] = {12, 14, 13, 11, 10, 5};
+const double VOLUME = 1.0 + 1.0 / 3.0 + 0.5 + 1.0 + 1.0 / 6.0;
+
+std::string cellCount(const std::string& cell)
+{
+    return std::to_string(1 + std::count(cell.begin(), cell.end(), ' '));
+}
+
+std::string scalars(int components = 1)
+{
+    std::string r;
+    for (int i = 0; i < POINT_COUNT * components; ++i)
+        r += std::to_string(components == 1 ? 10 * i : i % 2) + " ";
+    return r;
+}
+
+std::string legacy(const std::string& data)
+{
+    std::string r = "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
+                    std::to_string(POINT_COUNT) + " double\n" + POINTS + "\nCELLS 6 40\n";
+    for (const std::string& c : CELLS)
+        r += cellCount(c) + " " + c + "\n";
+    r += "CELL_TYPES 6\n";
+    for (const int t : TYPES)
+        r += std::to_string(t) + "\n";
+    return r + "POINT_DATA " + std::to_string(POINT_COUNT) + "\n" + data;
+}
+
+std::string legacyScalars()
+{
+    return legacy("SCALARS temperature double 1\nLOOKUP_TABLE default\n" + scalars() + "\n");
+}
+
+std::string xml()
+{
+    std::string connectivity, offsets, types;
+    int offset = 0;
+    for (int i = 0; i < 6; ++i) {
+        connectivity += CELLS[i] + " ";
+        offset += std::stoi(cellCount(CELLS[i]));
+        offsets += std::to_string(offset) + " ";
+        types += std::to_string(TYPES[i]) + " ";
+    }
+    const auto array = [](const std::string& type, const std::string& attributes,
+                          const std::string& values) {
+        return "<DataArray type=\"" + type + "\" " + attributes + " format=\"ascii\">" + values +
+               "</DataArray>";
+    };
+    return "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\" version=\"0.1\">"
+           "<UnstructuredGrid><Piece NumberOfPoints=\"" +
+           std::to_string(POINT_COUNT) + "\" NumberOfCells=\"6\"><PointData Scalars=\"a\">" +
+           array("Float64", "Name=\"a\"", scalars()) + array("Float64", "Name=\"b\"", scalars()) +
+           "</PointData><Points>" + array("Float64", "NumberOfComponents=\"3\"", POINTS) +
+           "</Points><Cells>" + array("Int64", "Name=\"connectivity\"", connectivity) +
+           array("Int64", "Name=\"offsets\"", offsets) + array("UInt8", "Name=\"types\"", types) +
+           "</Cells></Piece></UnstructuredGrid></VTKFile>";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to)
+{
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+struct Read
+{
+    osg::ref_ptr<VolumeAppearance> appearance;
+    const core::TetraSet* set = nullptr;
+    std::string error;
+};
+
+Read read(const std::string& content, const std::string& extension, const std::string& options = "")
+{
+    const std::string path = ::testing::TempDir() + "/VtkReaderTest." + extension;
+    std::ofstream(path, std::ios::binary) << content;
+    osg::ref_ptr<osgDB::Options> o = new osgDB::Options(options);
+    osgDB::ReaderWriter::ReadResult result = osgDB::Registry::instance()->readNode(path, o.get());
+    Read r;
+    r.appearance = dynamic_cast<VolumeAppearance*>(result.getNode());
+    r.error = result.message();
+    if (r.appearance)
+        if (auto* geometry = dynamic_cast<VolumeGeometry*>(r.appearance->getChild(0)))
+            r.set = geometry->getTetraSet().get();
+    return r;
+}
+
+void expectMesh(const Read& r)
+{
+    ASSERT_TRUE(r.set) << r.error;
+    EXPECT_NEAR(core::volume(*r.set), VOLUME, 1e-12);
+    EXPECT_TRUE(core::findAdjacency(*r.set).nonManifold.empty());
+    // The three neighbours and the tetrahedron hang together.
+    std::size_t shared = 0;
+    for (const auto& n : core::findAdjacency(*r.set).neighbours)
+        for (const int t : n)
+            shared += t != core::Adjacency::NONE ? 1u : 0u;
+    EXPECT_GT(shared, 2u * 4u);
+}
+
+} // namespace
+
+TEST(VtkReader, ScalarsOfBothFormatsAreLookedUpInTheRange)
+{
+    for (const bool isXml : {false, true}) {
+        const Read r = read(isXml ? xml() : legacyScalars(), isXml ? "vtu" : "vtk");
+        expectMesh(r);
+        ASSERT_TRUE(r.set);
+        const Voxels* voxels = r.appearance->getVoxels();
+        ASSERT_TRUE(voxels && voxels->valid());
+        EXPECT_EQ(voxels->getRange(), osg::Vec2d(0.0, 190.0));
+        // Interpolated in the row of voxels, a vertex has its scalar.
+        const Voxels::Block block = voxels->getBrick(0);
+        const auto* row = reinterpret_cast<const float*>(block.data);
+        for (std::size_t i = 0; i < r.set->vertices.size(); ++i) {
+            const double x = r.set->vertices.voxelCoordinate(i).x;
+            const auto k = static_cast<std::size_t>(x);
+            const double f = x - static_cast<double>(k);
+            EXPECT_NEAR(row[k] * (1.0 - f) + row[k + 1] * f, 10.0 * static_cast<double>(i), 1e-4);
+            const core::Box3d inside = voxels->getLayout().extent();
+            EXPECT_GT(x, inside.min.x);
+            EXPECT_LT(x, inside.max.x);
+        }
+    }
+}
+
+TEST(VtkReader, OptionsChooseArrayTableAndUnit)
+{
+    const std::string table = ::testing::TempDir() + "/VtkReaderTest.lut";
+    std::ofstream(table) << "0 1 0 0 0.1\n190 0 0 1 0.9\n";
+    const Read r = read(xml(), "vtu", "scalars=b table=VtkReaderTest.lut unit=3");
+    ASSERT_TRUE(r.set) << r.error;
+    EXPECT_EQ(r.appearance->getChild(0)->getName(), "b");
+    EXPECT_EQ(r.appearance->getOpacityUnit(), 3.0);
+    EXPECT_EQ(r.appearance->getLookupTable()->getDomain(), LookupTable::DATA_VALUES);
+    EXPECT_FALSE(read(xml(), "vtu", "table=none.lut").appearance);
+    EXPECT_FALSE(read(xml(), "vtu", "unit=-1").appearance);
+    EXPECT_NE(read(xml(), "vtu", "scalars=c").error.find("'c'; there are: a, b"),
+              std::string::npos);
+}
+
+TEST(VtkReader, ColoursAreCarriedAsTheyAre)
+{
+    for (const int components : {3, 4}) {
+        const Read r = read(legacy("SCALARS paint unsigned_char " + std::to_string(components) +
+                                   "\nLOOKUP_TABLE default\n" + scalars(components) + "\n"),
+                            "vtk");
+        expectMesh(r);
+        ASSERT_TRUE(r.set);
+        EXPECT_FALSE(r.appearance->getVoxels());
+        EXPECT_EQ(r.set->vertices.format().colorSize, 4);
+        EXPECT_NEAR(r.set->vertices.record(0)[1], 1.0 / 255.0, 1e-12);
+        EXPECT_NEAR(r.set->vertices.record(0)[3], components == 3 ? 1.0 : 1.0 / 255.0, 1e-12);
+    }
+}
+
+TEST(VtkReader, BadFilesAreRefusedInASentence)
+{
+    const std::string good = legacyScalars();
+    const std::pair<std::string, std::string> bad[] = {
+        {"", "UNSTRUCTURED_GRID"},
+        {"nonsense", "UNSTRUCTURED_GRID"},
+        {replaced(good, "UNSTRUCTURED_GRID", "POLYDATA"), "UNSTRUCTURED_GRID"},
+        {replaced(good, "14 15 16 17 18 19\n", "14 15 16 17 18 99\n"), "cell 2 refers to point 99"},
+        {replaced(good, "14 15 16 17 18 19\n", "14 15 16 17 18 -9\n"), "cell 2 refers to point -9"},
+        {replaced(good, "CELLS 6 40", "CELLS 6 38"), "38 numbers"},
+        {replaced(good, "CELLS 6 40", "CELLS 6 44"), "CELLS"},
+        {replaced(good, "CELLS 6 40", "CELLS 5 40"), "CELLS"},
+        {replaced(good, "CELLS 6 40", "CELLS 99999999999999 40"), "CELLS"},
+        {replaced(good, "\n12\n", "\n25\n"), "cell 0 is of VTK's type 25"},
+        {replaced(good, "\n12\n", "\n13\n"), "cell 0 has 8 points"},
+        {replaced(good, "default\n0 10 ", "default\n0 nan "), ""},
+        {legacy(""), "point scalars"},
+        {legacy("VECTORS v double\n" + scalars(3) + "\n"), ""},
+        {good.substr(0, good.find("CELL_TYPES")), ""},
+        {good.substr(0, good.find("CELLS") + 20), ""},
+        {good.substr(0, good.find("POINTS") + 30), ""}};
+    for (const auto& [content, words] : bad) {
+        const Read r = read(content, "vtk");
+        if (r.appearance && words.empty()) continue; // vectors of three may pass for colours
+        EXPECT_FALSE(r.appearance) << words;
+        EXPECT_NE(r.error.find("VtkReaderTest.vtk"), std::string::npos) << r.error;
+        EXPECT_NE(r.error.find(words), std::string::npos) << r.error;
+        EXPECT_EQ(r.error.find('\n'), std::string::npos) << r.error;
+    }
+    const std::string tree = xml();
+    for (const std::string& content :
+         {std::string(), std::string("<VTKFile"), tree.substr(0, tree.size() / 2),
+          replaced(tree, "NumberOfCells=\"6\"", "NumberOfCells=\"7\""),
+          replaced(tree, "14 15 16 17 18 19", "14 15 16 17 18 99")}) {
+        const Read r = read(content, "vtu");
+        EXPECT_FALSE(r.appearance) << content;
+        EXPECT_FALSE(r.error.empty());
+    }
+    EXPECT_FALSE(osgDB::readRefNodeFile("missing.vtu"));
+}
+
+// A cube of hexahedra whose scalar is linear shows the same as voxels with these values.
+class VtkReaderPicture : public support::GLTest
+{
+protected:
+    static constexpr int CELLS = 4;
+    static constexpr double SIZE = 16.0;
+
+    static std::string cube()
+    {
+        const int m = CELLS + 1, points = m * m * m;
+        std::string at, values, corners, types;
+        for (int i = 0; i < points; ++i) {
+            const int x = i % m, y = i / m % m, z = i / m / m;
+            for (const int v : {x, y, z})
+                at += std::to_string(v * SIZE / CELLS) + " ";
+            values += std::to_string(x + 2 * z) + " ";
+            if (x == CELLS || y == CELLS || z == CELLS) continue;
+            corners += "8 ";
+            for (const int o : {0, 1, m + 1, m, m * m, m * m + 1, m * m + m + 1, m * m + m})
+                corners += std::to_string(i + o) + " ";
+            types += "12 ";
+        }
+        const std::string cells = std::to_string(CELLS * CELLS * CELLS);
+        return "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
+               std::to_string(points) + " double\n" + at + "\nCELLS " + cells + " " +
+               std::to_string(9 * CELLS * CELLS * CELLS) + "\n" + corners + "\nCELL_TYPES " +
+               cells + "\n" + types + "\nPOINT_DATA " + std::to_string(points) +
+               "\nSCALARS s double 1\nLOOKUP_TABLE default\n" + values + "\n";
+    }
+    static osg::ref_ptr<VolumeAppearance> voxelsOfTheSame()
+    {
+        VoxelSource::Description description;
+        description.size = {17, 17, 17};
+        description.type = VoxelType::FLOAT32;
+        osg::ref_ptr<MemoryVoxelSource> source = new MemoryVoxelSource;
+        source->allocate(description);
+        auto* out = static_cast<float*>(source->data());
+        for (int i = 0; i < 17 * 17 * 17; ++i)
+            *out++ = static_cast<float>(i % 17 + 2 * (i / 289)) * float(CELLS / SIZE);
+        osg::ref_ptr<Voxels> voxels = new Voxels(source);
+        voxels->setRange(osg::Vec2d(0.0, 3.0 * CELLS));
+        osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
+        appearance->setVoxels(voxels);
+        appearance->addChild(VolumeGeometry::createBox(*voxels));
+        return appearance;
+    }
+};
+
+TEST_F(VtkReaderPicture, ScalarsShowAsVoxelsDo)
+{
+    const Read mesh = read(cube(), "vtk", "unit=4");
+    ASSERT_TRUE(mesh.appearance) << mesh.error;
+    const osg::ref_ptr<VolumeAppearance> voxels = voxelsOfTheSame();
+    osg::ref_ptr<LookupTable> table = new LookupTable;
+    table->setPoints(
+        {{0.0, {0.1, 0.2, 0.9, 0.0}}, {0.6, {0.2, 1.0, 0.2, 0.2}}, {1.0, {1.0, 0.5, 0.1, 0.9}}},
+        LookupTable::RANGE_FRACTION);
+    const double period = 0.25, spacing = mesh.appearance->getVoxels()->getSpacing().x();
+    for (VolumeAppearance* a : {mesh.appearance.get(), voxels.get()}) {
+        a->setLookupTable(table);
+        a->setTechnique(VolumeAppearance::SLICES);
+        ASSERT_TRUE(a->setOpacityUnit(4.0));
+        const double p = a == voxels.get() ? period : period / spacing;
+        ASSERT_TRUE(a->setSamplingPeriod(osg::Vec3d(p, p, p)));
+    }
+    const support::RenderOptions view =
+        support::RenderOptions().size(64, 64).orthographic(12.0).lookAt({30, -25, 20}, {8, 8, 8},
+                                                                        {0, 0, 1});
+    const support::FloatImage a = support::renderScene(mesh.appearance, view);
+    const support::FloatImage b = support::renderScene(voxels, view);
+    EXPECT_GT(support::coveredPixels(a, 0.2f).count(), 500u);
+    // At an edge, one slice may cover a pixel of one picture only.
+    EXPECT_LE(support::compare(a, b).rmse, 1e-3);
+}
+
+#endif
