@@ -43,11 +43,7 @@ public:
         _appearance->setLookupTable(table);
         _appearance->setTechnique(_slabs ? VolumeAppearance::SLABS : VolumeAppearance::SLICES);
         _appearance->addChild(VolumeGeometry::createBox(*voxels));
-        if (scene.shaded) {
-            _appearance->setShading(true);
-            status = _appearance->setMaterial({scene.ambient, scene.diffuse, 0.0, 1.0});
-            if (!status.ok()) return status;
-        }
+        _appearance->setShading(scene.shaded);
         support::RenderOptions options = scene.view;
         options.light = scene.shaded;
         _renderer = std::make_unique<support::SceneRenderer>(_appearance, options);
