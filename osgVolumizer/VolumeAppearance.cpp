@@ -2,6 +2,8 @@
 
 #include "Error.h"
 #include "render/ContextResources.h"
+#include "render/FrameTimes.h"
+#include "render/SamplingChoice.h"
 #include "render/SharedStateSets.h"
 #include "render/TableTextures.h"
 
@@ -24,7 +26,8 @@ Status refuse(const VolumeAppearance& appearance, const char* field, double valu
 } // namespace
 
 VolumeAppearance::VolumeAppearance()
-    : _lookupTable(new LookupTable), _tableTextures(new render::TableTextures)
+    : _lookupTable(new LookupTable), _tableTextures(new render::TableTextures),
+      _samplingChoices(new render::SamplingChoices), _frameTimes(new render::FrameTimes)
 {
 }
 
@@ -35,7 +38,8 @@ VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp&
       _material(o._material), _gradients(o._gradients), _combineRule(o._combineRule),
       _accumulationBits(o._accumulationBits), _sampling(o._sampling),
       _errorTolerance(o._errorTolerance), _targetFrameTime(o._targetFrameTime),
-      _opacityUnit(o._opacityUnit), _tableTextures(new render::TableTextures)
+      _opacityUnit(o._opacityUnit), _tableTextures(new render::TableTextures),
+      _samplingChoices(new render::SamplingChoices), _frameTimes(new render::FrameTimes)
 {
 }
 

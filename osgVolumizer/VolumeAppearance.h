@@ -10,8 +10,10 @@
 
 namespace osgVolumizer {
 namespace render {
+class FrameTimes;
+class SamplingChoices;
 class TableTextures;
-}
+} // namespace render
 
 /// What the volume geometry below is filled with: voxels, lookup table, sampling, shading.
 class OSGVOLUMIZER_EXPORT VolumeAppearance : public osg::Group
@@ -179,12 +181,16 @@ public:
     const core::SamplingParameters& getSamplingParameters() const { return _sampling; }
 
     /// The root mean square error, in units of full intensity, that sampling may make in a picture;
-    /// then period and table are chosen from the data and the table, and the sampling period is not
-    /// used. 0 (default): as the period says. Composited slabs without shading only.
+    /// then period and kind of table are chosen by marching some random rays through the data, once
+    /// for each change of table or data (some 10 ms), and the sampling period is not used.
+    /// Composited slabs of voxels of one component, without shading. 0 (default): as the period
+    /// says.
     Status setErrorTolerance(double rootMeanSquare);
     double getErrorTolerance() const { return _errorTolerance; }
-    /// Seconds that a frame may take while the view moves: the period is lengthened until it does,
-    /// and is what was asked for again once the view rests. 0 (default): always what was asked for.
+    /// Seconds that a frame may take while the view moves: the period is lengthened little by
+    /// little until it does, and is what was asked for again in the first frame in which the view
+    /// rests (a viewer that draws on demand has to draw that one). 0 (default): always what was
+    /// asked for.
     Status setTargetFrameTime(double seconds);
     double getTargetFrameTime() const { return _targetFrameTime; }
 
@@ -200,6 +206,9 @@ public:
 
     /// Textures of the lookup table; the renderer's.
     render::TableTextures& tableTextures() const { return *_tableTextures; }
+    /// What an error tolerance and a frame time come to; the renderer's.
+    render::SamplingChoices& samplingChoices() const { return *_samplingChoices; }
+    render::FrameTimes& frameTimes() const { return *_frameTimes; }
 
 protected:
     ~VolumeAppearance() override;
@@ -222,6 +231,8 @@ private:
     double _errorTolerance = 0.0, _targetFrameTime = 0.0;
     double _opacityUnit = 0.0;
     std::unique_ptr<render::TableTextures> _tableTextures;
+    std::unique_ptr<render::SamplingChoices> _samplingChoices;
+    std::unique_ptr<render::FrameTimes> _frameTimes;
 };
 
 } // namespace osgVolumizer

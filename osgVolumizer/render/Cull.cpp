@@ -1,13 +1,16 @@
 #include "Cull.h"
 
 #include "BrickSelection.h"
+#include "FrameTimes.h"
 #include "Look.h"
 #include "Matrices.h"
 #include "Merger.h"
+#include "SamplingChoice.h"
 #include "SliceCache.h"
 #include "Statistics.h"
 #include "VolumeInstance.h"
 
+#include <osg/Timer>
 #include <osgUtil/CullVisitor>
 
 #include <cmath>
@@ -70,6 +73,47 @@ void registerVolume(std::unique_ptr<VolumeInstance> volume, osgUtil::CullVisitor
     cv.popStateSet();
 }
 
+TableTexture tableOf(const VolumeAppearance& appearance, VolumeAppearance::Lookup lookup)
+{
+    return appearance.tableTextures().get(*appearance.getLookupTable(),
+                                          appearance.getVoxels()->getRange(), lookup);
+}
+
+// The table, and, where an error tolerance or a frame time is asked for, the period.
+TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visitor)
+{
+    const VolumeAppearance& appearance = *volume.appearance;
+    const VolumeAppearance::Lookup lookup = usedLookup(appearance, *volume.prepared);
+    TableTexture table;
+    if (!(appearance.getErrorTolerance() > 0.0) ||
+        !canKeepTolerance(appearance, *volume.prepared)) {
+        table = tableOf(appearance, lookup);
+    } else {
+        SamplingQuestion question;
+        question.tolerance = appearance.getErrorTolerance();
+        if (lookup != VolumeAppearance::PREINTEGRATED)
+            question.midpoints = tableOf(appearance, VolumeAppearance::AFTER_INTERPOLATION);
+        if (lookup != VolumeAppearance::AFTER_INTERPOLATION)
+            question.integrals = tableOf(appearance, VolumeAppearance::PREINTEGRATED);
+        question.frameToUnits =
+            glm::dmat3(volume.prepared->frameToObject) / appearance.getEffectiveOpacityUnit();
+        question.box = volume.prepared->regionBox;
+        question.nearest = appearance.getInterpolation() == VolumeAppearance::NEAREST;
+        const SamplingChoice choice =
+            appearance.samplingChoices().get(*appearance.getVoxels(), question);
+        volume.sampling.periodVoxel = glm::dvec3(choice.periodVoxel);
+        table = choice.integrals ? question.integrals : question.midpoints;
+    }
+    if (appearance.getTargetFrameTime() > 0.0 && visitor.getFrameStamp()) {
+        const double now = osg::Timer::instance()->time_s();
+        const osg::Matrixd toClip = *volume.frameToEye * *visitor.getProjectionMatrix();
+        volume.sampling.periodVoxel *= appearance.frameTimes().stretch(
+            volume.viewId, visitor.getFrameStamp()->getFrameNumber(), toClip, now,
+            appearance.getTargetFrameTime());
+    }
+    return table;
+}
+
 } // namespace
 
 void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
@@ -100,9 +144,7 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     volume->frameToEye =
         new osg::RefMatrix(toOsg(toGlm(objectToEye) * volume->prepared->frameToObject));
     TableTexture table;
-    if (voxels)
-        table = appearance->tableTextures().get(*appearance->getLookupTable(), voxels->getRange(),
-                                                usedLookup(*appearance, *volume->prepared));
+    if (voxels) table = chooseSampling(*volume, visitor);
     const std::shared_ptr<VolumeLook> look = makeLook(*volume, table, visitor);
     volume->look = look;
     if (voxels) {

@@ -215,6 +215,19 @@ VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
     return runs ? appearance.getLookup() : VolumeAppearance::AFTER_INTERPOLATION;
 }
 
+bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
+{
+    const auto function = usedRayFunction(appearance, prepared);
+    if (usesSlabs(appearance, prepared) && appearance.getVoxels()->getComponents() == 1 &&
+        function == VolumeAppearance::COMPOSITE && !usesShading(appearance, prepared, function) &&
+        appearance.getLookup() != VolumeAppearance::BEFORE_INTERPOLATION)
+        return true;
+    reportUnsupported(appearance,
+                      "an error tolerance needs slabs, composited and not lit, and voxels of one "
+                      "component looked up after interpolation; the sampling period is used");
+    return false;
+}
+
 std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table,
                                      osgUtil::CullVisitor& visitor)
 {

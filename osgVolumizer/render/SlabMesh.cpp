@@ -38,6 +38,9 @@ BrickBatch batchOf(const SelectedBrick& brick)
     batch.textureBytes = brick.texture.bytes;
     batch.clipMin = glm::vec3(brick.box.min);
     batch.clipMax = glm::vec3(brick.box.max);
+    batch.brickMin = glm::vec3(brick.clipBox.min);
+    batch.brickMax = glm::vec3(brick.clipBox.max);
+    batch.cells = brick.cells;
     batch.textureScale = brick.textureScale;
     batch.brickMin = glm::vec3(brick.clipBox.min);
     batch.brickMax = glm::vec3(brick.clipBox.max);
@@ -163,8 +166,8 @@ std::shared_ptr<const VolumeMesh> screenMesh(const VolumeInstance& volume)
     mesh->stride = SLAB_STRIDE;
     mesh->slabOffset = 3;
     const double reference = volume.look->referenceDepth;
-    const float nearest = static_cast<float>(volume.depth.nearDepth - reference),
-                farthest = static_cast<float>(volume.depth.farDepth - reference);
+    const float nearest = static_cast<float>(volume.wholeDepth.nearDepth - reference),
+                farthest = static_cast<float>(volume.wholeDepth.farDepth - reference);
     for (const glm::vec2 corner :
          {glm::vec2(-1.0f), glm::vec2(3.0f, -1.0f), glm::vec2(-1.0f, 3.0f)})
         mesh->vertices.insert(mesh->vertices.end(), {corner.x, corner.y, 0.0f, nearest, farthest});

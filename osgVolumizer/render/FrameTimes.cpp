@@ -1,0 +1,34 @@
+#include "FrameTimes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgVolumizer {
+namespace render {
+
+double FrameTimes::stretch(std::uint64_t view, unsigned frame, const osg::Matrixd& toClip,
+                           double now, double target)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    if (_views.size() >= CAPACITY && !_views.count(view)) _views.clear();
+    View& v = _views[view];
+    if (v.frame == frame && frame != 0) return v.moved ? v.stretch : 1.0; // another eye's turn
+    const bool consecutive = v.frame + 1 == frame;
+    // What the last frame took, if it was drawn with this stretch.
+    if (consecutive && v.moved && now > v.time && target > 0.0) {
+        const double late = (now - v.time) / target;
+        // Part of a frame does not depend on samples: less than all of the change at once. On time
+        // it is tried whether there is some left, which a display that waits for its next refresh
+        // does not tell.
+        const double change = late > 1.0 ? std::pow(late, 0.7) : 0.97 * std::pow(late, 0.3);
+        v.stretch = std::clamp(v.stretch * std::clamp(change, 1.0 / 1.5, 2.0), 1.0, LARGEST);
+    }
+    v.moved = consecutive && v.toClip != toClip;
+    v.frame = frame;
+    v.toClip = toClip;
+    v.time = now;
+    return v.moved ? v.stretch : 1.0;
+}
+
+} // namespace render
+} // namespace osgVolumizer
