@@ -43,7 +43,7 @@ public:
         _appearance->setLookupTable(table);
         _appearance->setTechnique(_slabs ? VolumeAppearance::SLABS : VolumeAppearance::SLICES);
         _appearance->addChild(VolumeGeometry::createBox(*voxels));
-        if (scene.shaded) return Status(ErrorCode::NOT_SUPPORTED, "has no shading yet");
+        _appearance->setShading(scene.shaded);
         support::RenderOptions options = scene.view;
         options.light = scene.shaded;
         _renderer = std::make_unique<support::SceneRenderer>(_appearance, options);
