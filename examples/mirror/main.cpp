@@ -46,7 +46,7 @@ osg::ref_ptr<osg::Geometry> makeMirror(const osg::BoundingSphere& bound, double 
                                        osg::Texture2D* texture)
 {
     const osg::Vec3 center(bound.center().x(), bound.center().y(), height);
-    const float half = 2.2f * bound.radius();
+    const float half = 2.8f * bound.radius();
     osg::ref_ptr<osg::Geometry> square = osg::createTexturedQuadGeometry(
         center - osg::Vec3(half, half, 0.0f), osg::Vec3(2.0f * half, 0.0f, 0.0f),
         osg::Vec3(0.0f, 2.0f * half, 0.0f));
@@ -75,7 +75,7 @@ osg::ref_ptr<osg::Geometry> makeMirror(const osg::BoundingSphere& bound, double 
 osg::ref_ptr<osg::Group> withMirror(osg::Node* scene)
 {
     const osg::BoundingSphere& bound = scene->getBound();
-    const double height = bound.center().z() - 0.8 * bound.radius();
+    const double height = bound.center().z() - 0.62 * bound.radius();
     osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
     texture->setTextureSize(MIRROR_SIZE, MIRROR_SIZE);
     texture->setInternalFormat(GL_RGBA8);
@@ -93,9 +93,9 @@ int drawPicture(osg::Node* root, const osg::BoundingSphere& bound, const char* f
 {
     using namespace osgVolumizer::support;
     RenderOptions options;
-    const osg::Vec3d center = bound.center() - osg::Vec3d(0.0, 0.0, 0.65 * bound.radius());
+    const osg::Vec3d center = bound.center() - osg::Vec3d(0.0, 0.0, 0.6 * bound.radius());
     options.size(640, 480).perspective(30.0).lookAt(
-        center + osg::Vec3d(-1.6, -5.6, 1.9) * bound.radius(), center, osg::Vec3d(0.0, 0.0, 1.0));
+        center + osg::Vec3d(-1.6, -5.6, 1.7) * bound.radius(), center, osg::Vec3d(0.0, 0.0, 1.0));
     options.background = osg::Vec4(0.10f, 0.11f, 0.13f, 1.0f);
     options.light = true;
     options.frames = 2;

@@ -171,7 +171,7 @@ const std::vector<Property>& properties()
         sinceVersion(3, material()),
         sinceVersion(3, choice<&A::getGradients, &A::setGradients>("Gradients", gradientNames)),
         sinceVersion(3, accumulationBits()),
-        sinceVersion(3, choice<&A::getCombineRule, &A::setCombineRule>("CombineRule", ruleNames)),
+        sinceVersion(4, choice<&A::getCombineRule, &A::setCombineRule>("CombineRule", ruleNames)),
         sinceVersion(3,
                      number<&A::getErrorTolerance, &A::setErrorTolerance>("ErrorTolerance", 0.0)),
         sinceVersion(

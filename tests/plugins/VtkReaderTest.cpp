@@ -14,8 +14,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <string>
+
+#include <unistd.h>
 
 using namespace osgVolumizer;
 
@@ -102,9 +105,17 @@ struct Read
     std::string error;
 };
 
+// A folder of this process: tests run side by side.
+std::string folder()
+{
+    const std::string name = ::testing::TempDir() + "/VtkReader" + std::to_string(getpid());
+    std::filesystem::create_directories(name);
+    return name;
+}
+
 Read read(const std::string& content, const std::string& extension, const std::string& options = "")
 {
-    const std::string path = ::testing::TempDir() + "/VtkReaderTest." + extension;
+    const std::string path = folder() + "/VtkReaderTest." + extension;
     std::ofstream(path, std::ios::binary) << content;
     osg::ref_ptr<osgDB::Options> o = new osgDB::Options(options);
     osgDB::ReaderWriter::ReadResult result = osgDB::Registry::instance()->readNode(path, o.get());
@@ -158,7 +169,7 @@ TEST(VtkReader, ScalarsOfBothFormatsAreLookedUpInTheRange)
 
 TEST(VtkReader, OptionsChooseArrayTableAndUnit)
 {
-    const std::string table = ::testing::TempDir() + "/VtkReaderTest.lut";
+    const std::string table = folder() + "/VtkReaderTest.lut";
     std::ofstream(table) << "0 1 0 0 0.1\n190 0 0 1 0.9\n";
     const Read r = read(xml(), "vtu", "scalars=b table=VtkReaderTest.lut unit=3");
     ASSERT_TRUE(r.set) << r.error;
