@@ -46,13 +46,11 @@ public:
         /// Values are interpolated, then looked up: sharp, second order for smooth tables.
         AFTER_INTERPOLATION,
         /// Samples are looked up; extinction, and colour weighted by extinction, are interpolated.
-        /// For
-        /// values that are labels, between which there is nothing. Eight lookups a sample (64
+        /// For values that are labels, between which there is nothing. Eight lookups a sample (64
         /// for CUBIC), but still no upload when the table changes.
         BEFORE_INTERPOLATION,
         /// Between two samples the value is taken to run linearly, and the table is averaged over
-        /// that run
-        /// exactly: no value is skipped, however sharp the table (Engel, Kraus and Ertl,
+        /// that run exactly: no value is skipped, however sharp the table (Engel, Kraus and Ertl,
         /// Graphics Hardware 2001, by integral functions).
         PREINTEGRATED
     };
@@ -62,8 +60,7 @@ public:
     enum RayFunction
     {
         /// Light emitted and absorbed along the ray. All other functions draw the volume as one
-        /// layer,
-        /// in depth order by its centre.
+        /// layer, in depth order by its centre.
         COMPOSITE,
         /// The highest value, which is then looked up: colour, and opacity as for a layer one unit
         /// thick. Of RGBA voxels: of each premultiplied component.
@@ -73,13 +70,11 @@ public:
         /// The mean value over the length of the ray, then looked up. Not for RGBA voxels.
         AVERAGE,
         /// The integral of the value, as a fraction of the range, over the length in opacity units,
-        /// then
-        /// looked up as a fraction: choose the opacity unit such that sums lie in [0, 1]. Not for
-        /// RGBA voxels.
+        /// then looked up as a fraction: choose the opacity unit such that sums lie in [0, 1]. Not
+        /// for RGBA voxels.
         SUM,
         /// The first place where the interpolated value crosses the iso-value, opaque, in the
-        /// table's
-        /// colour; needs a region that is convex per brick. Not for RGBA voxels. Where the
+        /// table's colour; needs a region that is convex per brick. Not for RGBA voxels. Where the
         /// ray enters with a value already beyond there is no surface.
         ISOSURFACE
     };
@@ -89,15 +84,13 @@ public:
         /// Extinctions add, and each emits its own colour: clouds in one another.
         ABSORB,
         /// The volume shows nothing by itself, and neither emits nor absorbs: it paints the others.
-        /// Where
-        /// its table gives colour p and opacity a (of a layer one unit thick), the colours that
-        /// overlapping
-        /// volumes emit, lit or not, are multiplied by 1 - a + a * p; their opacity stays. Several
-        /// paint one after another, in any order. So a dose is painted over anatomy. Neither
-        /// lit nor composited itself, its ray function does not matter; interpolation is nearest or
-        /// linear, lookup after interpolation. Needs voxels in a convex region, in one voxel
-        /// frame; at most four of its bricks may overlap a volume. Volumes with a ray function
-        /// that gathers values are not painted.
+        /// Where its table gives colour p and opacity a (of a layer one unit thick), the colours
+        /// that overlapping volumes emit, lit or not, are multiplied by 1 - a + a * p; their
+        /// opacity stays. Several paint one after another, in any order. So a dose is painted over
+        /// anatomy. Neither lit nor composited itself, its ray function does not matter;
+        /// interpolation is nearest or linear, lookup after interpolation. Needs voxels in a convex
+        /// region, in one voxel frame; at most four of its bricks may overlap a volume. Volumes
+        /// with a ray function that gathers values are not painted.
         PAINT
     };
     /// Where gradients for shading come from. Both are central differences over a sample's
@@ -107,8 +100,7 @@ public:
         /// Six more samples of the voxels each time; no memory.
         ON_THE_FLY,
         /// One sample of a texture that holds gradients besides values; four times the memory (of
-        /// 8-bit
-        /// voxels eight times).
+        /// 8-bit voxels eight times).
         PRECOMPUTED
     };
 

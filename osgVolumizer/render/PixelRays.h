@@ -10,10 +10,9 @@ namespace osgVolumizer {
 namespace render {
 
 /// The rays of all pixels of a view, in a frame of the caller's: origin + t * direction, with t the
-/// depth
-/// (-z of the eye frame) measured from `referenceDepth`. Both are linear in window coordinates
-/// wherever depth alone decides clip w, as in every perspective, orthographic, off-axis and
-/// mirrored view.
+/// depth (-z of the eye frame) measured from `referenceDepth`. Both are linear in window
+/// coordinates wherever depth alone decides clip w, as in every perspective, orthographic, off-axis
+/// and mirrored view.
 struct PixelRays
 {
     glm::dvec2 windowCenter{0.0}; ///< window coordinates are counted from here, for precision
