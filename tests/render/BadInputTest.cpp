@@ -224,6 +224,44 @@ TEST_F(BadInput, ExtremeSampling)
     }
 }
 
+TEST_F(BadInput, StrangeTables)
+{
+    osg::ref_ptr<VolumeAppearance> volume = makeVolume(_voxels);
+    const glm::dvec4 red(1, 0, 0, 0.1), white(1, 1, 1, 1.0), nothing(0.0);
+    const Points tables[] = {{{0.5, red}},                               // a single entry
+                             {{-7.0, red}},                              // outside of the range
+                             {{0.5, nothing}, {0.5, white}, {0.5, red}}, // nothing but a jump
+                             {{0.0, white}, {1.0, white}},               // opaque
+                             {{0.4, nothing}, {0.4 + 1e-12, white}, {1.0, white}}};
+    for (const auto lookup :
+         {VolumeAppearance::AFTER_INTERPOLATION, VolumeAppearance::BEFORE_INTERPOLATION,
+          VolumeAppearance::PREINTEGRATED, VolumeAppearance::AUTOMATIC_LOOKUP}) {
+        volume->setLookup(lookup);
+        for (const Points& points : tables) {
+            volume->setLookupTable(makeTable(points));
+            support::SceneRenderer renderer(volume, view());
+            const FloatImage image = renderer.render();
+            EXPECT_EQ(renderer.glError(), 0u);
+            for (const glm::vec4& p : image.pixels)
+                for (int c = 0; c < 4; ++c)
+                    ASSERT_TRUE(p[c] >= 0.0f && p[c] <= 1.00001f);
+        }
+    }
+    // What has no meaning is refused, and the table before it still drawn.
+    const FloatImage before = support::renderScene(volume, view());
+    LookupTable& table = *volume->getLookupTable();
+    const Points refused[] = {{{0.0, glm::dvec4(0, 0, 0, NAN)}, {1.0, red}},
+                              {{0.0, glm::dvec4(0, 0, 0, -0.1)}, {1.0, red}},
+                              {{0.0, glm::dvec4(0, 0, 0, 1.1)}, {1.0, red}},
+                              {{NAN, red}, {1.0, red}},
+                              {{1.0, red}, {0.0, nothing}}};
+    for (const Points& points : refused) {
+        const Status status = table.setPoints(points, LookupTable::RANGE_FRACTION);
+        EXPECT_EQ(status.code, ErrorCode::VALUE_INVALID) << status.text;
+    }
+    EXPECT_EQ(compare(support::renderScene(volume, view()), before).maximum, 0.0);
+}
+
 TEST_F(BadInput, TinyVolumes)
 {
     // One sample along an axis has no extent; two have one cell.
