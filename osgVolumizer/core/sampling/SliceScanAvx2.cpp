@@ -3,6 +3,7 @@
 #include "TetraCases.h"
 
 #include <array>
+#include <cstring>
 
 #if defined(OSGVOLUMIZER_DISPATCH_AVX2)
 #include <immintrin.h>
@@ -37,6 +38,13 @@ OSGVOLUMIZER_AVX2 inline __m256i runningSum(__m256i n)
     return _mm256_add_epi32(sum, _mm256_blend_epi32(_mm256_setzero_si256(), lower, 0xf0));
 }
 
+/// Writes the upper half, anywhere: _mm_storeh_pd() is declared to need the alignment of a double.
+OSGVOLUMIZER_AVX2 inline void storeUpper(std::uint32_t* to, __m128i v)
+{
+    const long long upper = _mm_extract_epi64(v, 1);
+    std::memcpy(to, &upper, sizeof(upper));
+}
+
 /// Writes eight pairs of numbers, pair j to to[before[j]].
 OSGVOLUMIZER_AVX2 inline void writePairs(__m256i first, __m256i second, __m256i before,
                                          std::uint32_t* to)
@@ -49,7 +57,7 @@ OSGVOLUMIZER_AVX2 inline void writePairs(__m256i first, __m256i second, __m256i 
                               _mm256_extracti128_si256(low, 1), _mm256_extracti128_si256(high, 1)};
     for (int j = 0; j < 4; ++j) {
         _mm_storel_epi64(reinterpret_cast<__m128i*>(to + at[2 * j]), pairs[j]);
-        _mm_storeh_pd(reinterpret_cast<double*>(to + at[2 * j + 1]), _mm_castsi128_pd(pairs[j]));
+        storeUpper(to + at[2 * j + 1], pairs[j]);
     }
 }
 
@@ -120,8 +128,7 @@ OSGVOLUMIZER_AVX2 void emit(const Emission& in)
             indices + Slicer::indexCount(cursor) + WRITE_AHEAD / sizeof(std::uint32_t), 1);
         __builtin_prefetch(faceOffsets + Slicer::faceCount(cursor) + 32, 1);
         _mm_storel_epi64(reinterpret_cast<__m128i*>(indices + Slicer::indexCount(cursor)), corners);
-        _mm_storeh_pd(reinterpret_cast<double*>(indices + Slicer::indexCount(next) - 2),
-                      _mm_castsi128_pd(corners));
+        storeUpper(indices + Slicer::indexCount(next) - 2, corners);
     }
 }
 
