@@ -130,7 +130,10 @@ TEST_F(Limits, BricksLargerThanTexturesAreDrawnCoarser)
         const auto volume = [&](const std::function<double(const glm::dvec3&)>& value) {
             osg::ref_ptr<Voxels> voxels = typed(*makeVoxels({25, 21, 17}, value), type);
             EXPECT_TRUE(voxels->setBrickSize(glm::ivec3(32)).ok());
-            return makeTwin(voxels, smoothPoints(0.1), VolumeAppearance::SLABS).node;
+            osg::ref_ptr<VolumeAppearance> node = makeVolume(voxels);
+            node->setLookupTable(makeTable(smoothPoints(0.1)));
+            node->setTechnique(VolumeAppearance::SLABS);
+            return node;
         };
         const osg::ref_ptr<VolumeAppearance> straight = volume(linear), bent = volume(cubic);
         const FloatImage exactStraight = support::renderScene(straight, view());
