@@ -226,7 +226,8 @@ TEST_F(Skipping, NothingIsSampledBehindOpaqueGeometry)
     const osg::ref_ptr<osg::Geometry> wall = osg::createTexturedQuadGeometry(
         osg::Vec3(-200, -20, -200), osg::Vec3(400, 0, 0), osg::Vec3(0, 0, 400));
     wall->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
-    osg::ref_ptr<osg::Vec4Array> black = new osg::Vec4Array(1, new osg::Vec4(0, 0, 0, 1));
+    const osg::Vec4 opaque(0, 0, 0, 1);
+    osg::ref_ptr<osg::Vec4Array> black = new osg::Vec4Array(1, &opaque);
     wall->setColorArray(black, osg::Array::BIND_OVERALL);
     const RenderOptions options = RenderOptions().size(96, 96).perspective(40.0).lookAt(
         {32, -150, 32}, {32, 32, 32}, {0, 0, 1});
