@@ -1,6 +1,6 @@
 #include "BrickTextures.h"
 
-#include "CoarseTexture.h"
+#include "Statistics.h"
 
 #include "../core/voxels/Half.h"
 #include "../core/voxels/VoxelData.h"
@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <type_traits>
 
@@ -188,6 +187,25 @@ BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick, bool gradient
     return {texture, block.bytes};
 }
 
+// The values that are read stay the same.
+void makeFloat(osg::Texture3D& texture)
+{
+    switch (texture.getInternalFormat()) {
+    case GL_R8:
+    case GL_R16:
+    case GL_R16F:
+        texture.setInternalFormat(GL_R32F);
+        break;
+    case GL_RGBA8:
+    case GL_RGBA16:
+    case GL_RGBA16F_ARB:
+        texture.setInternalFormat(GL_RGBA32F_ARB);
+        break;
+    default:
+        break;
+    }
+}
+
 } // namespace
 
 osg::ref_ptr<BrickTextures> BrickTextures::of(const Voxels& voxels)
@@ -229,33 +247,21 @@ void BrickTextures::releaseGLObjects(osg::State* state) const
         }
 }
 
-void chooseFormat(osg::State& state, osg::Texture3D& texture)
+CoarseTexture applyBrick(osg::RenderInfo& renderInfo, const ContextLimits& limits,
+                         const BrickTexture& brick, unsigned unit)
 {
-    static std::mutex mutex;
-    static std::map<unsigned, bool> filtersInSoftware; // by context
-    const unsigned context = state.getContextID();
-    std::lock_guard<std::mutex> lock(mutex);
-    auto known = filtersInSoftware.find(context);
-    if (known == filtersInSoftware.end()) {
-        const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-        const bool software = name && std::strstr(name, "llvmpipe");
-        known = filtersInSoftware.emplace(context, software).first;
+    osg::State& state = *renderInfo.getState();
+    const CoarseTexture fitting = fittingTexture(*brick.texture, limits.texture3DSize);
+    if (!fitting.texture->getTextureObject(state.getContextID())) {
+        const auto add = [&](const char* name, double amount) {
+            count(renderInfo.getCurrentCamera(), state.getFrameStamp(), name, amount);
+        };
+        add("osgVolumizer bricks uploaded", 1.0);
+        add("osgVolumizer bytes uploaded", static_cast<double>(brick.bytes));
+        if (limits.filtersFloatsBest) makeFloat(*fitting.texture);
     }
-    if (!known->second || texture.getTextureObject(context)) return;
-    switch (texture.getInternalFormat()) {
-    case GL_R8:
-    case GL_R16:
-    case GL_R16F:
-        texture.setInternalFormat(GL_R32F);
-        break;
-    case GL_RGBA8:
-    case GL_RGBA16:
-    case GL_RGBA16F_ARB:
-        texture.setInternalFormat(GL_RGBA32F_ARB);
-        break;
-    default:
-        break;
-    }
+    state.applyTextureAttribute(unit, fitting.texture.get());
+    return fitting;
 }
 
 glm::dvec2 texelToRangeFraction(const Voxels& voxels)

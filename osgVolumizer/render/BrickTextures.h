@@ -1,9 +1,12 @@
 #pragma once
 
 #include "BrickCells.h"
+#include "CoarseTexture.h"
+#include "ContextLimits.h"
 
 #include "../Voxels.h"
 
+#include <osg/RenderInfo>
 #include <osg/Texture3D>
 
 #include <glm/vec2.hpp>
@@ -51,11 +54,10 @@ private:
     std::map<std::pair<std::int64_t, bool>, Entry> _entries; ///< with and without gradients
 };
 
-/// On devices that filter float textures both faster and more exactly than others (llvmpipe, whose
-/// 8-bit path also rounds the result to 8 bits: an error of half a 255th of the type's range),
-/// makes a texture that has not been uploaded yet a float one; the values read are the same. Call
-/// in the draw thread before the texture is applied. Thread safe.
-void chooseFormat(osg::State& state, osg::Texture3D& texture);
+/// Applies a brick's texture to a texture unit, as large and in such a format as suits the context;
+/// counts what is uploaded. Call in the draw thread. Returns the texture applied.
+CoarseTexture applyBrick(osg::RenderInfo& renderInfo, const ContextLimits& limits,
+                         const BrickTexture& brick, unsigned unit);
 
 /// Scale and offset from a texel, as the shader reads it, to the fraction of the voxels' range.
 glm::dvec2 texelToRangeFraction(const Voxels& voxels);

@@ -2,6 +2,7 @@
 
 #include <osg/GLExtensions>
 
+#include <cstring>
 #include <mutex>
 
 namespace osgVolumizer {
@@ -51,6 +52,8 @@ ContextLimits queryContextLimits(osg::State& state)
         gl.glVersion >= 3.0f ||
         osg::isGLExtensionSupported(state.getContextID(), "GL_ARB_color_buffer_float");
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits.texture3DSize);
+    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    limits.filtersFloatsBest = renderer && std::strstr(renderer, "llvmpipe");
     std::lock_guard<std::mutex> lock(mockMutex());
     if (mock()) mock()(limits);
     return limits;

@@ -15,6 +15,9 @@ struct ContextLimits
     double version = 0.0;      ///< of OpenGL
     bool floatTargets = false; ///< drawing into 16- and 32-bit float textures
     int texture3DSize = 0;     ///< largest side of a 3D texture, texels; 0: there are none
+    /// Float textures are filtered both faster and more exactly than others (llvmpipe, whose 8-bit
+    /// path also rounds the result to 8 bits: an error of half a 255th of the type's range).
+    bool filtersFloatsBest = false;
 
     /// Whether volumes can be drawn at all; else what is missing.
     Status check() const;

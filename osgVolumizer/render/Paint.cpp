@@ -116,23 +116,23 @@ std::string paintSource(int count)
            product + ";\n}\n";
 }
 
-void setPaints(osg::State& state, const Uniforms& uniforms, const std::vector<Paint>& all,
-               unsigned firstUnit)
+void setPaints(osg::RenderInfo& renderInfo, const ContextLimits& limits, const Uniforms& uniforms,
+               const std::vector<Paint>& all, unsigned firstUnit)
 {
+    osg::State& state = *renderInfo.getState();
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Paint& paint = all[i];
         const std::string prefix = "paint" + std::to_string(i);
         const auto name = [&prefix](const char* suffix) { return prefix + suffix; };
         const unsigned unit = firstUnit + 2 * static_cast<unsigned>(i);
-        if (!paint.voxels.texture->getTextureObject(state.getContextID()))
-            chooseFormat(state, *paint.voxels.texture);
-        state.applyTextureAttribute(unit, paint.voxels.texture.get());
+        const CoarseTexture voxels = applyBrick(renderInfo, limits, paint.voxels, unit);
         if (paint.table.texture) state.applyTextureAttribute(unit + 1, paint.table.texture.get());
         uniforms.set(name("Voxels").c_str(), static_cast<int>(unit));
         uniforms.set(name("Table").c_str(), static_cast<int>(unit + 1));
         uniforms.set(name("FromFrame").c_str(), paint.fromFrame);
-        uniforms.set(name("TextureScale").c_str(), paint.textureScale);
-        uniforms.set(name("TextureOffset").c_str(), paint.textureOffset);
+        uniforms.set(name("TextureScale").c_str(), paint.textureScale * voxels.scale);
+        uniforms.set(name("TextureOffset").c_str(),
+                     paint.textureOffset * voxels.scale + voxels.offset);
         uniforms.set(name("Min").c_str(), paint.boxMin);
         uniforms.set(name("Max").c_str(), paint.boxMax);
         uniforms.set(name("Planes").c_str(), paint.planes);

@@ -3,7 +3,7 @@
 #include "BrickTextures.h"
 #include "TableTextures.h"
 
-#include <osg/State>
+#include <osg/RenderInfo>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
@@ -43,8 +43,8 @@ void applyPaint(std::vector<VolumeInstance*>& volumes);
 std::string paintSource(int count);
 /// Textures and uniforms of paints, for a program that has that code; from `firstUnit` on, two
 /// units each.
-void setPaints(osg::State& state, const Uniforms& uniforms, const std::vector<Paint>& paints,
-               unsigned firstUnit);
+void setPaints(osg::RenderInfo& renderInfo, const ContextLimits& limits, const Uniforms& uniforms,
+               const std::vector<Paint>& paints, unsigned firstUnit);
 
 } // namespace render
 } // namespace osgVolumizer

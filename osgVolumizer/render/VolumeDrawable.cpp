@@ -3,7 +3,6 @@
 #include "../Error.h"
 #include "BrickCells.h"
 #include "BrickTextures.h"
-#include "CoarseTexture.h"
 #include "ContextResources.h"
 #include "Matrices.h"
 #include "PixelRays.h"
@@ -184,21 +183,13 @@ private:
     bool _enabled[ATTRIBUTE_COUNT] = {};
 };
 
-void drawBatch(osg::RenderInfo& renderInfo, const Uniforms& uniforms,
+void drawBatch(osg::RenderInfo& renderInfo, const ContextLimits& limits, const Uniforms& uniforms,
                const ProgramFeatures& features, const BrickBatch& batch)
 {
     osg::State& state = *renderInfo.getState();
     if (batch.texture) {
         const CoarseTexture voxels =
-            fittingTexture(*batch.texture, contextResources(state)->limits.texture3DSize);
-        if (!voxels.texture->getTextureObject(state.getContextID())) {
-            count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
-                  "osgVolumizer bricks uploaded", 1.0);
-            count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
-                  "osgVolumizer bytes uploaded", static_cast<double>(batch.textureBytes));
-            chooseFormat(state, *voxels.texture);
-        }
-        state.applyTextureAttribute(UNIT_VOXELS, voxels.texture.get());
+            applyBrick(renderInfo, limits, {batch.texture, batch.textureBytes}, UNIT_VOXELS);
         uniforms.set("textureScale", batch.textureScale * voxels.scale);
         uniforms.set("textureOffset", batch.textureOffset * voxels.scale + voxels.offset);
     }
@@ -253,7 +244,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     if (_look->features.shading) setShading(uniforms, *_look, *rays, toEye, state);
     if (_look->features.opaqueDepth) setDepthTextures(state, uniforms, *rays, *_look, *resources);
     if (_look->table.texture) state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
-    setPaints(state, uniforms, _look->paints, UNIT_FIRST_PAINT);
+    setPaints(renderInfo, resources->limits, uniforms, _look->paints, UNIT_FIRST_PAINT);
     // Gathered values hide nothing, so they need no order, and no parts.
     std::optional<RayTarget> target;
     if (_look->features.gathers())
@@ -262,7 +253,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
         const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
         const auto drawBatches = [&]() {
             for (const BrickBatch& batch : _mesh->batches)
-                drawBatch(renderInfo, uniforms, _look->features, batch);
+                drawBatch(renderInfo, resources->limits, uniforms, _look->features, batch);
         };
         if (_look->scissors.empty()) {
             drawBatches();

@@ -148,3 +148,24 @@ TEST_F(Limits, BricksLargerThanTexturesAreDrawnCoarser)
         render::mockContextLimits({});
     }
 }
+
+TEST_F(Limits, PaintLargerThanTexturesIsCoarserToo)
+{
+    const auto linear = [](const glm::dvec3& p) { return 0.02 * p.x + 0.015 * p.y + 0.01 * p.z; };
+    osg::ref_ptr<Voxels> voxels = makeVoxels({23, 21, 17}, linear);
+    ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(32)).ok());
+    osg::ref_ptr<VolumeAppearance> paint = makeVolume(voxels);
+    paint->setLookupTable(makeTable(smoothPoints(0.9)));
+    paint->setCombineRule(VolumeAppearance::PAINT);
+    osg::ref_ptr<VolumeAppearance> painted = makeVolume(makeVoxels({12, 12, 12}, bumps));
+    painted->setLookupTable(makeTable(smoothPoints(0.3)));
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    scene->addChild(painted);
+    const FloatImage plain = support::renderScene(scene, view());
+    scene->addChild(paint);
+    const FloatImage expected = support::renderScene(scene, view());
+    EXPECT_GT(compare(expected, plain).maximum, 0.05);
+    render::mockContextLimits([](ContextLimits& limits) { limits.texture3DSize = 13; });
+    EXPECT_LE(compare(support::renderScene(scene, view()), expected).maximum, 1.0 / 255.0 + 1e-3);
+    EXPECT_TRUE(lastErrorNames("23,21,17 voxels")) << getLastError().text;
+}
