@@ -82,15 +82,19 @@ VolumeOutline GroupComposer::outlineOf(const VolumeInstance& volume) const
 // Surfaces that, looked at closely, reach into no volume stay the leaves they are.
 void GroupComposer::prepareSurfaces(std::vector<OrderedLeaf>& leaves)
 {
+    std::vector<VolumeOutline> outlines;
+    if (!_group.surfaces.empty())
+        for (const PreparedVolume& volume : _volumes)
+            outlines.push_back(outlineOf(*volume.instance));
     for (const ForeignLeaf* leaf : _group.surfaces) {
         Surface surface;
         surface.leaf = leaf;
         surface.mesh = SurfaceMesh::of(*leaf);
         surface.view = surface.mesh ? surface.mesh->view() : leaf->view();
         const bool reaches =
-            std::any_of(_volumes.begin(), _volumes.end(), [&](const PreparedVolume& v) {
-                return surface.mesh ? surface.mesh->touches(outlineOf(*v.instance))
-                                    : v.instance->depth.overlaps(surface.view.depth);
+            std::any_of(outlines.begin(), outlines.end(), [&](const VolumeOutline& outline) {
+                return surface.mesh ? surface.mesh->touches(outline)
+                                    : outline.depth.overlaps(surface.view.depth);
             });
         if (reaches)
             _surfaces.push_back(std::move(surface));
