@@ -251,6 +251,18 @@ void makeCaptureTextures(osg::State& state, const AccumulationBuffers& accumulat
     buffers.restColor = nullptr;
 }
 
+// Gives a framebuffer the target's colour, unless that is what is attached already.
+void attachColor(osg::State& state, GLuint framebuffer, osg::Texture2D& color,
+                 const osg::Texture2D*& attached)
+{
+    if (attached == &color) return;
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const GLuint name = textureName(state, color);
+    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, framebuffer);
+    gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D, name, 0);
+    attached = &color;
+}
+
 } // namespace
 
 CaptureBuffers& Accumulation::captureBuffers(osg::State& state, int slotCount)
@@ -258,17 +270,10 @@ CaptureBuffers& Accumulation::captureBuffers(osg::State& state, int slotCount)
     const std::shared_ptr<ContextResources> resources = contextResources(state);
     const AccumulationBuffers& accumulation = resources->accumulation;
     CaptureBuffers& buffers = resources->capture;
-    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     if (buffers.slotCount < slotCount || buffers.width != accumulation.width ||
         buffers.height != accumulation.height || buffers.colorFormat != accumulation.colorFormat)
         makeCaptureTextures(state, accumulation, buffers, slotCount);
-    if (buffers.restColor != accumulation.color) {
-        const GLuint color = textureName(state, *accumulation.color);
-        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.restFramebuffer);
-        gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D,
-                                  color, 0);
-        buffers.restColor = accumulation.color;
-    }
+    attachColor(state, buffers.restFramebuffer, *accumulation.color, buffers.restColor);
     return buffers;
 }
 
@@ -277,14 +282,7 @@ LayerBuffers& Accumulation::layerBuffers(osg::State& state)
     AccumulationBuffers& buffers = contextResources(state)->accumulation;
     LayerBuffers& layers = buffers.layers;
     if (!layers.rankDepth) makeLayerTextures(state, buffers);
-    if (layers.rankColor != buffers.color) {
-        osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-        const GLuint color = textureName(state, *buffers.color);
-        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.rankFramebuffer);
-        gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D,
-                                  color, 0);
-        layers.rankColor = buffers.color;
-    }
+    attachColor(state, layers.rankFramebuffer, *buffers.color, layers.rankColor);
     return layers;
 }
 

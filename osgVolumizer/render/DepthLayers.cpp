@@ -1,6 +1,5 @@
 #include "DepthLayers.h"
 
-#include "ScissorScope.h"
 #include "ScreenPass.h"
 #include "SharedStateSets.h"
 #include "VolumeProgram.h"
@@ -17,7 +16,6 @@ namespace render {
 namespace {
 
 using osg::StateAttribute;
-constexpr GLenum WAIT_FOR_QUERY = 0x8E13; // GL_QUERY_WAIT
 
 osg::ref_ptr<osg::StateSet> layerScreenState(const char* fragment, bool writeDepth)
 {
@@ -29,11 +27,6 @@ osg::ref_ptr<osg::StateSet> layerScreenState(const char* fragment, bool writeDep
     set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
     set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
     return set;
-}
-
-void bindFramebuffer(osg::State& state, GLuint name)
-{
-    state.get<osg::GLExtensions>()->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, name);
 }
 
 } // namespace
@@ -60,12 +53,7 @@ osg::ref_ptr<osg::StateSet> LayerLeaf::stateSet(Step step)
     if (step == BEGIN_RANK || step == BEGIN_REST)
         return sharedStateSet(SharedState::FILL,
                               []() { return layerScreenState("fill.frag.glsl", true); });
-    return sharedStateSet(SharedState::CLEAR, []() {
-        osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-        set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE_ON);
-        set->setAttribute(new osg::Stencil, FORCE_ON); // its write mask is all ones
-        return set;
-    });
+    return clearState();
 }
 
 void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
@@ -75,15 +63,10 @@ void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const std::shared_ptr<ContextResources> resources = contextResources(state);
     const LayerBuffers& layers = _accumulation->layerBuffers(state);
-    const auto clear = [this](GLbitfield what) {
-        const ScissorScope scissor;
-        if (scissor.set(_area)) glClear(what);
-    };
     switch (_step) {
     case BEGIN_CAPTURE:
         bindFramebuffer(state, layers.layerFramebuffers[_index]);
-        glClearStencil(0);
-        clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+        clearArea(_area, GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
         if (_index > 0) gl.glBeginConditionalRender(layers.queries[_index - 1], WAIT_FOR_QUERY);
         gl.glBeginQuery(GL_SAMPLES_PASSED_ARB, layers.queries[_index]);
         break;
@@ -107,8 +90,7 @@ void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
     case BEGIN_RANK:
     case BEGIN_REST:
         bindFramebuffer(state, layers.rankFramebuffer);
-        glClearStencil(0);
-        if (_step == BEGIN_REST) clear(GL_STENCIL_BUFFER_BIT);
+        if (_step == BEGIN_REST) clearArea(_area, GL_STENCIL_BUFFER_BIT);
         gl.glBeginConditionalRender(layers.queries[_index], WAIT_FOR_QUERY);
         state.applyTextureAttribute(UNIT_SORTED_FAR, layers.sorted[0]);
         state.applyTextureAttribute(UNIT_SORTED_NEAR, layers.sorted[1]);
@@ -140,10 +122,7 @@ osg::ref_ptr<osg::StateSet> makeSurfaceState(LayerLeaf::Step step, int index)
         set->setAttribute(new osg::ColorMask(false, false, false, false), FORCE_ON);
     if (step == LayerLeaf::DEPTH) return set;
     const auto stencil = [&set](osg::Stencil::Function function, int reference) {
-        osg::ref_ptr<osg::Stencil> s = new osg::Stencil;
-        s->setFunction(function, reference, 0xff);
-        s->setOperation(osg::Stencil::INCR, osg::Stencil::INCR, osg::Stencil::INCR);
-        set->setAttributeAndModes(s, FORCE_ON);
+        set->setAttributeAndModes(countingStencil(function, reference), FORCE_ON);
     };
     osg::Depth::Function function = osg::Depth::EQUAL;
     if (step == LayerLeaf::BEGIN_CAPTURE) {

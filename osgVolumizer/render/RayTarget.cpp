@@ -1,6 +1,7 @@
 #include "RayTarget.h"
 
 #include "ContextResources.h"
+#include "ScreenPass.h"
 #include "Uniforms.h"
 
 #include <osg/BlendEquation>
@@ -107,14 +108,7 @@ void RayTarget::resolve(const VolumeLook& look)
         uniforms.set("lastEntry", static_cast<float>(look.table.count - 1));
         _state.applyTextureAttribute(UNIT_TABLE, look.table.texture.get());
     }
-    static const float triangle[] = {-1.0f, -1.0f, 3.0f, -1.0f, -1.0f, 3.0f};
-    _resources.vertices.stream(_gl, GL_ARRAY_BUFFER_ARB, triangle, sizeof(triangle));
-    _gl.glEnableVertexAttribArray(ATTRIBUTE_POSITION);
-    _gl.glVertexAttribPointer(ATTRIBUTE_POSITION, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    _gl.glDisableVertexAttribArray(ATTRIBUTE_POSITION);
-    _gl.glBindBuffer(GL_ARRAY_BUFFER_ARB, 0);
-    _state.unbindVertexBufferObject();
+    drawScreen(_state, _resources, _viewport);
 }
 
 RayTarget::~RayTarget()

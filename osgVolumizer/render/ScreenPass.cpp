@@ -1,6 +1,7 @@
 #include "ScreenPass.h"
 
 #include "ScissorScope.h"
+#include "SharedStateSets.h"
 
 #include <osg/ColorMask>
 #include <osg/Depth>
@@ -54,6 +55,36 @@ void drawScreen(osg::State& state, ContextResources& resources, const glm::ivec4
     gl.glDisableVertexAttribArray(0);
     gl.glBindBuffer(GL_ARRAY_BUFFER_ARB, 0);
     state.unbindVertexBufferObject();
+}
+
+osg::ref_ptr<osg::StateSet> clearState()
+{
+    return sharedStateSet(SharedState::CLEAR, []() {
+        osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+        set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE_ON);
+        set->setAttribute(new osg::Stencil, FORCE_ON); // its write mask is all ones
+        return set;
+    });
+}
+
+void clearArea(const glm::ivec4& area, GLbitfield what)
+{
+    const ScissorScope scissor;
+    glClearStencil(0);
+    if (scissor.set(area)) glClear(what);
+}
+
+osg::ref_ptr<osg::Stencil> countingStencil(osg::Stencil::Function function, int reference)
+{
+    osg::ref_ptr<osg::Stencil> stencil = new osg::Stencil;
+    stencil->setFunction(function, reference, 0xff);
+    stencil->setOperation(osg::Stencil::INCR, osg::Stencil::INCR, osg::Stencil::INCR);
+    return stencil;
+}
+
+void bindFramebuffer(osg::State& state, GLuint name)
+{
+    state.get<osg::GLExtensions>()->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, name);
 }
 
 void setUniform(osg::State& state, const char* name, int value)

@@ -3,6 +3,7 @@
 #include "ContextResources.h"
 
 #include <osg/StateSet>
+#include <osg/Stencil>
 
 #include <glm/vec4.hpp>
 
@@ -25,6 +26,16 @@ osg::ref_ptr<osg::StateSet> screenState(const std::string& fragmentShader, bool 
 
 /// Draws such a pass to a window rectangle (x, y, width, height) with the program in force.
 void drawScreen(osg::State& state, ContextResources& resources, const glm::ivec4& area);
+
+/// The state of a leaf that clears depth and stencil: both may be written. Shared.
+osg::ref_ptr<osg::StateSet> clearState();
+/// Clears the buffers `what` of a window rectangle, stencil to 0.
+void clearArea(const glm::ivec4& area, GLbitfield what);
+/// Counts a pixel's fragments; those pass for which `function` holds of reference and count.
+osg::ref_ptr<osg::Stencil> countingStencil(osg::Stencil::Function function, int reference);
+/// Redirects drawing, not reading.
+void bindFramebuffer(osg::State& state, GLuint name);
+constexpr GLenum WAIT_FOR_QUERY = 0x8E13; ///< GL_QUERY_WAIT
 
 /// Sets a uniform of the program in force.
 void setUniform(osg::State& state, const char* name, int value);

@@ -18,7 +18,6 @@ enum class SharedState : std::uint64_t
     DEPTH,
     NEAREST_SLOT,
     FILL_REST,
-    CLEAR_SLOT,
     LAYER_SURFACES = SORT + 1000, ///< these and the following
     SORT_SLOTS = SORT + 2000,
     CAPTURED_SURFACES = SORT + 3000,

@@ -1,6 +1,5 @@
 #include "SurfaceCapture.h"
 
-#include "ScissorScope.h"
 #include "ScreenPass.h"
 #include "SharedStateSets.h"
 #include "VolumeProgram.h"
@@ -16,7 +15,6 @@ namespace render {
 
 namespace {
 
-constexpr GLenum WAIT_FOR_QUERY = 0x8E13; // GL_QUERY_WAIT
 constexpr std::size_t MEMORY_BUDGET = std::size_t(512) << 20, BYTES_PER_SLOT = 20 + 5;
 
 // Comparators of a sorting network for n elements (Batcher; Knuth, TAOCP 3, algorithm 5.2.2 M).
@@ -68,11 +66,6 @@ std::string sortCode(int slots)
                 " + 32.0 * " + element("id", i + 3) + "));\n";
     }
     return code + "}\n";
-}
-
-void bindFramebuffer(osg::State& state, GLuint name)
-{
-    state.get<osg::GLExtensions>()->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, name);
 }
 
 osg::ref_ptr<osg::StateSet> withUnits(osg::ref_ptr<osg::StateSet> set)
@@ -132,12 +125,7 @@ osg::ref_ptr<osg::StateSet> CaptureLeaf::stateSet(const Settings& settings)
     default:
         break;
     }
-    return sharedStateSet(SharedState::CLEAR_SLOT, []() {
-        osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-        set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE_ON);
-        set->setAttribute(new osg::Stencil, FORCE_ON); // its write mask is all ones
-        return set;
-    });
+    return clearState();
 }
 
 void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
@@ -149,15 +137,10 @@ void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
     const CaptureBuffers& buffers = _accumulation->captureBuffers(state, _settings.slotCount);
     const GLuint target = resources->accumulation.framebuffer;
     const int slot = _settings.slot;
-    const auto clear = [this](GLbitfield what) {
-        const ScissorScope scissor;
-        if (scissor.set(_settings.area)) glClear(what);
-    };
     switch (_settings.step) {
     case BEGIN_SLOT:
         bindFramebuffer(state, buffers.framebuffers[slot]);
-        glClearStencil(0);
-        clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+        clearArea(_settings.area, GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
         if (_settings.conditional)
             gl.glBeginConditionalRender(buffers.queries[slot - 1], WAIT_FOR_QUERY);
         gl.glBeginQuery(GL_SAMPLES_PASSED_ARB, buffers.queries[slot]);
@@ -180,8 +163,7 @@ void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
     case BEGIN_REST:
         gl.glBeginConditionalRender(buffers.queries[slot], WAIT_FOR_QUERY);
         bindFramebuffer(state, buffers.restFramebuffer);
-        glClearStencil(0);
-        clear(GL_STENCIL_BUFFER_BIT);
+        clearArea(_settings.area, GL_STENCIL_BUFFER_BIT);
         state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, resources->accumulation.opaqueDepth);
         drawScreen(state, *resources, _settings.area);
         break;
@@ -193,18 +175,6 @@ void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
     for (unsigned unit = UNIT_OPAQUE_DEPTH; unit <= UNIT_FIRST_LAYER; ++unit)
         state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }
-
-namespace {
-
-osg::ref_ptr<osg::Stencil> countingStencil(osg::Stencil::Function function, int reference)
-{
-    osg::ref_ptr<osg::Stencil> stencil = new osg::Stencil;
-    stencil->setFunction(function, reference, 0xff);
-    stencil->setOperation(osg::Stencil::INCR, osg::Stencil::INCR, osg::Stencil::INCR);
-    return stencil;
-}
-
-} // namespace
 
 osg::ref_ptr<osg::StateSet> captureState(int fragment)
 {

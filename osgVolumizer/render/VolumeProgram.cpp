@@ -132,7 +132,7 @@ osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features)
     osg::ref_ptr<osg::Program> result = new osg::Program;
     result->setName("osgVolumizer resolve");
     result->addShader(
-        new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource("resolve.vert.glsl")));
+        new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource("screen.vert.glsl")));
     result->addShader(new osg::Shader(osg::Shader::FRAGMENT,
                                       header(features) + shaderSource("resolve.frag.glsl")));
     return result;
