@@ -4,6 +4,7 @@
 #include "ScissorScope.h"
 #include "ScreenPass.h"
 #include "SharedStateSets.h"
+#include "Statistics.h"
 #include "VolumeProgram.h"
 
 #include <osg/Depth>
@@ -298,16 +299,25 @@ void Accumulation::begin(osg::RenderInfo& renderInfo)
     osg::State& state = *renderInfo.getState();
     const std::shared_ptr<ContextResources> resources = contextResources(state);
     AccumulationBuffers& buffers = resources->accumulation;
-    const AccumulationSettings& s = _settings;
+    const glm::ivec4& viewport = _settings.viewport;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING_EXT, &_drawFramebuffer);
     glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING_EXT, &_readFramebuffer);
     glGetIntegerv(GL_SAMPLE_BUFFERS, &_sampleBuffers);
 
-    ensureDepth(buffers, s.x + s.width, s.y + s.height,
+    ensureDepth(buffers, viewport[0] + viewport[2], viewport[1] + viewport[3],
                 depthFormatOfFramebuffer(*resources, _drawFramebuffer, _sampleBuffers > 0));
-    copyOpaqueDepth(state, buffers);
+    const auto countCopied = [&](const char* name, int copies) {
+        count(renderInfo.getCurrentCamera(), state.getFrameStamp(), name,
+              double(copies) * _area[2] * _area[3]);
+    };
+    buffers.hasOpaqueDepth = !_depthCleared;
+    if (!_depthCleared) {
+        copyOpaqueDepth(state, buffers);
+        countCopied("osgVolumizer depths copied", 1);
+    }
     if (needsTarget(*resources)) {
-        ensureTarget(state, buffers, colorFormatOf(s.bits, resources->limits));
+        countCopied("osgVolumizer colors copied", 2); // and back
+        ensureTarget(state, buffers, colorFormatOf(_settings.bits, resources->limits));
         copyToTarget(state, buffers);
         _redirected = true;
     }
@@ -316,22 +326,26 @@ void Accumulation::begin(osg::RenderInfo& renderInfo)
 
 void Accumulation::blitFrom(osg::GLExtensions& gl, GLuint from, GLuint to, GLbitfield what) const
 {
-    const AccumulationSettings& s = _settings;
+    const int x0 = _area[0], y0 = _area[1], x1 = x0 + _area[2], y1 = y0 + _area[3];
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, from);
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, to);
-    gl.glBlitFramebuffer(s.x, s.y, s.x + s.width, s.y + s.height, s.x, s.y, s.x + s.width,
-                         s.y + s.height, what, GL_NEAREST);
+    gl.glBlitFramebuffer(x0, y0, x1, y1, x0, y0, x1, y1, what, GL_NEAREST);
+}
+
+void Accumulation::copyTo(osg::State& state, osg::Texture2D& depth, GLuint from) const
+{
+    state.get<osg::GLExtensions>()->glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, from);
+    bindForCopy(state, depth);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, _area[0], _area[1], _area[0], _area[1], _area[2],
+                        _area[3]);
 }
 
 void Accumulation::copyOpaqueDepth(osg::State& state, AccumulationBuffers& buffers)
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const AccumulationSettings& s = _settings;
     const GLuint source = static_cast<GLuint>(_drawFramebuffer);
     if (_sampleBuffers == 0) {
-        gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, source);
-        bindForCopy(state, *buffers.opaqueDepth);
-        glCopyTexSubImage2D(GL_TEXTURE_2D, 0, s.x, s.y, s.x, s.y, s.width, s.height);
+        copyTo(state, *buffers.opaqueDepth, source);
         return;
     }
     const GLuint depth = textureName(state, *buffers.opaqueDepth);
@@ -347,16 +361,12 @@ void Accumulation::copyOpaqueDepth(osg::State& state, AccumulationBuffers& buffe
 void Accumulation::copyToTarget(osg::State& state, AccumulationBuffers& buffers)
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const AccumulationSettings& s = _settings;
     const GLuint source = static_cast<GLuint>(_drawFramebuffer);
-    if (_sampleBuffers > 0) {
-        blitFrom(gl, source, buffers.framebuffer, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        return;
-    }
-    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, source);
-    bindForCopy(state, *buffers.depth);
-    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, s.x, s.y, s.x, s.y, s.width, s.height);
-    blitFrom(gl, source, buffers.framebuffer, GL_COLOR_BUFFER_BIT);
+    const bool blitsDepth = _sampleBuffers > 0 && !_depthCleared;
+    if (!_depthCleared && !blitsDepth) copyTo(state, *buffers.depth, source);
+    blitFrom(gl, source, buffers.framebuffer,
+             GL_COLOR_BUFFER_BIT | (blitsDepth ? GL_DEPTH_BUFFER_BIT : 0u));
+    if (_depthCleared) clearArea(_area, GL_DEPTH_BUFFER_BIT);
 }
 
 void Accumulation::end(osg::RenderInfo& renderInfo)
@@ -403,13 +413,12 @@ void Accumulation::writeBack(osg::State& state, ContextResources& resources)
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const AccumulationBuffers& buffers = resources.accumulation;
-    const AccumulationSettings& s = _settings;
     blitFrom(gl, buffers.framebuffer, static_cast<GLuint>(_drawFramebuffer), GL_COLOR_BUFFER_BIT);
     if (!_depthKept) return;
     // Not a blit, which would need the framebuffer's very format.
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth);
     state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.depth);
-    drawScreen(state, resources, {s.x, s.y, s.width, s.height});
+    drawScreen(state, resources, _area);
     state.haveAppliedTextureAttribute(UNIT_LAYER_DEPTH, osg::StateAttribute::TEXTURE);
 }
 

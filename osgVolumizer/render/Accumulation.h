@@ -16,20 +16,22 @@ struct AccumulationSettings
     /// Bits per colour channel, 8, 16 or 32, of the target; a framebuffer that has as many is used
     /// as it is.
     int bits = 32;
-    /// Window rectangle that may be drawn to: x, y, width, height.
-    int x = 0, y = 0, width = 0, height = 0;
+    glm::ivec4 viewport{0}; ///< x, y, width, height: largest rectangle that may be drawn to
 };
 
-/// One pass over a transparent bin's leaves. begin() takes a copy of the opaque scene's depth for
-/// segments to end at, and, where the framebuffer has fewer bits than asked for, redirects drawing
-/// to a float target that starts as a copy of the framebuffer, so that any blend function still
-/// finds the colours it expects. So it is with several samples a pixel: colours are resolved,
-/// depths are those of one sample, and what is drawn between has one; edges of opaque geometry stay
-/// smooth. end() writes the result back. Both run in the draw thread, in one context.
+/// One pass over a transparent bin's leaves. begin() takes a copy of the opaque scene's depth, if
+/// there is one, for segments to end at, and, where the framebuffer has fewer bits than asked for,
+/// redirects drawing to a float target that starts as a copy of the framebuffer, so that any blend
+/// function still finds the colours it expects. So it is with several samples a pixel: colours are
+/// resolved, depths are those of one sample, and what is drawn between has one; edges of opaque
+/// geometry stay smooth. end() writes the result back. Both run in the draw thread, in one context.
 class Accumulation : public osg::Referenced
 {
 public:
-    explicit Accumulation(const AccumulationSettings& settings) : _settings(settings) {}
+    explicit Accumulation(const AccumulationSettings& settings)
+        : _settings(settings), _area(settings.viewport)
+    {
+    }
 
     void begin(osg::RenderInfo& renderInfo);
     void end(osg::RenderInfo& renderInfo);
@@ -44,6 +46,11 @@ public:
     /// Before the frame is drawn: what surfaces leave in the target's depth is for the framebuffer.
     void keepDepth() { _depthKept = true; }
     bool isDepthKept() const { return _depthKept; }
+    /// Before the frame is drawn: nothing is drawn outside this part (x, y, width, height) of the
+    /// viewport, so no more has to be copied.
+    void restrictTo(const glm::ivec4& area) { _area = area; }
+    /// Before the frame is drawn: the depth buffer is as it was cleared, to 1, so it is not copied.
+    void expectClearedDepth() { _depthCleared = true; }
     /// The buffers of sorted layers, made when first asked for, with the target's colour.
     LayerBuffers& layerBuffers(osg::State& state);
     /// The buffers of captured surfaces, with at least so many slots.
@@ -51,13 +58,15 @@ public:
 
 private:
     bool needsTarget(const ContextResources& resources) const;
+    void copyTo(osg::State& state, osg::Texture2D& depth, GLuint from) const;
     void copyOpaqueDepth(osg::State& state, AccumulationBuffers& buffers);
     void copyToTarget(osg::State& state, AccumulationBuffers& buffers);
     void blitFrom(osg::GLExtensions& gl, GLuint from, GLuint to, GLbitfield what) const;
     void writeBack(osg::State& state, ContextResources& resources);
 
     AccumulationSettings _settings;
-    bool _redirected = false, _targetRequired = false, _depthKept = false;
+    glm::ivec4 _area;
+    bool _redirected = false, _targetRequired = false, _depthKept = false, _depthCleared = false;
     GLint _drawFramebuffer = 0, _readFramebuffer = 0, _sampleBuffers = 0;
 };
 

@@ -97,6 +97,38 @@ void countCells(const core::CellGrid& grid, const std::vector<std::uint8_t>& occ
             }
 }
 
+// Cells between the first and the last occupied one of each column: mean over the axes.
+double spannedCells(const core::CellGrid& grid, const std::vector<std::uint8_t>& occupied)
+{
+    std::int64_t spanned = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        glm::ivec3 cell;
+        for (cell[v] = 0; cell[v] < grid.count[v]; ++cell[v])
+            for (cell[u] = 0; cell[u] < grid.count[u]; ++cell[u]) {
+                int first = grid.count[axis], end = 0;
+                for (cell[axis] = 0; cell[axis] < grid.count[axis]; ++cell[axis]) {
+                    if (!occupied[grid.index(cell.x, cell.y, cell.z)]) continue;
+                    first = std::min(first, cell[axis]);
+                    end = cell[axis] + 1;
+                }
+                spanned += std::max(end - first, 0);
+            }
+    }
+    return double(spanned) / 3.0;
+}
+
+// What is known once it is known which cells are occupied.
+void setOccupied(const core::CellGrid& grid, const std::vector<std::uint8_t>& occupied,
+                 BrickCells& cells)
+{
+    countCells(grid, occupied, cells);
+    cells.origin = glm::vec3(grid.originVoxel);
+    cells.cellSize = static_cast<float>(grid.cellSize);
+    cells.spannedVolume = spannedCells(grid, occupied) * std::pow(double(grid.cellSize), 3.0);
+    cells.texture = makeTexture(grid.count, occupied);
+}
+
 std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, std::int64_t brick,
                                                const core::CellGrid& grid,
                                                const core::LayerRanges& layers,
@@ -109,13 +141,56 @@ std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, std::int64_
     result->box = shownBox(layers, voxels.getLayout().brick(brick), query.cubic, shows);
     if (result->box.empty()) return result;
     const std::vector<std::uint8_t> occupied = core::occupiedCells(grid, shows);
-    countCells(grid, occupied, *result);
+    setOccupied(grid, occupied, *result);
     const auto range = std::minmax_element(grid.low.begin(), grid.low.end());
     const float highest = *std::max_element(grid.high.begin(), grid.high.end());
     result->homogeneous = voxels.getComponents() == 1 && *range.first == highest;
-    result->origin = glm::vec3(grid.originVoxel);
-    result->cellSize = static_cast<float>(grid.cellSize);
-    result->texture = makeTexture(grid.count, occupied);
+    return result;
+}
+
+// Marks the cells of a whole volume that an occupied cell of a brick reaches into.
+void markOccupied(const BrickCells& cells, const core::Box3d& clipBox, core::CellGrid& grid,
+                  std::vector<std::uint8_t>& occupied)
+{
+    const osg::Image& distances = *cells.texture->getImage();
+    for (int z = 0; z < distances.r(); ++z)
+        for (int y = 0; y < distances.t(); ++y)
+            for (int x = 0; x < distances.s(); ++x) {
+                if (*distances.data(x, y, z) != 0) continue;
+                const glm::dvec3 corner =
+                    glm::dvec3(cells.origin) + double(cells.cellSize) * glm::dvec3(x, y, z);
+                const core::Box3d cell =
+                    intersection(core::Box3d{corner, corner + double(cells.cellSize)}, clipBox);
+                if (cell.empty()) continue;
+                const double size = grid.cellSize;
+                const glm::ivec3 first(glm::floor(cell.min / size));
+                const glm::ivec3 end = glm::min(
+                    glm::max(glm::ivec3(glm::ceil(cell.max / size)), first + 1), grid.count);
+                for (int k = first.z; k < end.z; ++k)
+                    for (int j = first.y; j < end.y; ++j)
+                        for (int i = first.x; i < end.x; ++i)
+                            occupied[grid.index(i, j, k)] = 255;
+            }
+}
+
+std::shared_ptr<const BrickCells>
+joinedCells(const Voxels& voxels,
+            const std::map<std::int64_t, std::shared_ptr<const BrickCells>>& parts)
+{
+    core::CellGrid grid;
+    const glm::ivec3 samples = voxels.getSize();
+    grid.cellSize = cellSizeFor(samples);
+    grid.count = glm::max((samples - 2) / grid.cellSize + 1, 1);
+    std::vector<std::uint8_t> occupied(static_cast<std::size_t>(core::sampleCount(grid.count)), 0);
+    auto result = std::make_shared<BrickCells>();
+    for (const auto& part : parts) {
+        const BrickCells& cells = *part.second;
+        if (!cells.texture) continue;
+        markOccupied(cells, voxels.getLayout().brick(part.first).clipBox, grid, occupied);
+        result->box.expand(cells.box.min);
+        result->box.expand(cells.box.max);
+    }
+    setOccupied(grid, occupied, *result);
     return result;
 }
 
@@ -144,9 +219,7 @@ std::shared_ptr<const BrickCells> CellCache::get(const Voxels& voxels, std::int6
                                                  const OccupancyQuery& query)
 {
     const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
-    const bool byTable = voxels.getComponents() == 1 && !query.isosurface;
-    const Key key{byTable ? query.table->id : 0, query.cubic, query.isosurface,
-                  query.isosurface ? query.isoFraction : 0.0};
+    const Key key = keyOf(voxels, query);
     std::lock_guard<std::mutex> lock(_mutex);
     Brick& entry = _bricks[brick];
     if (entry.modifiedCount != modified || entry.layoutCount != layout)
@@ -162,6 +235,38 @@ std::shared_ptr<const BrickCells> CellCache::get(const Voxels& voxels, std::int6
     entry.cells.emplace_front(key, findOccupied(voxels, brick, grid, *entry.layers, query));
     if (entry.cells.size() > CAPACITY) entry.cells.pop_back();
     return entry.cells.front().second;
+}
+
+CellCache::Key CellCache::keyOf(const Voxels& voxels, const OccupancyQuery& query)
+{
+    const bool byTable = voxels.getComponents() == 1 && !query.isosurface;
+    return {byTable ? query.table->id : 0, query.cubic, query.isosurface,
+            query.isosurface ? query.isoFraction : 0.0};
+}
+
+std::shared_ptr<const BrickCells> CellCache::join(const Voxels& voxels, const OccupancyQuery& query,
+                                                  const std::vector<Part>& parts)
+{
+    const Key key = keyOf(voxels, query);
+    const unsigned layout = voxels.getLayoutCount();
+    std::lock_guard<std::mutex> lock(_mutex);
+    _joined.remove_if([layout](const Joined& j) { return j.layoutCount != layout; });
+    const auto found = std::find_if(_joined.begin(), _joined.end(),
+                                    [&key](const Joined& j) { return j.key == key; });
+    if (found != _joined.end())
+        _joined.splice(_joined.begin(), _joined, found);
+    else
+        _joined.push_front({key, layout, {}, nullptr});
+    if (_joined.size() > CAPACITY) _joined.pop_back();
+    Joined& joined = _joined.front();
+    bool changed = !joined.cells;
+    for (const Part& part : parts) {
+        auto& known = joined.parts[part.first];
+        changed = changed || known != part.second;
+        known = part.second;
+    }
+    if (changed) joined.cells = joinedCells(voxels, joined.parts);
+    return joined.cells;
 }
 
 bool CellCache::scan(const Voxels& voxels, std::int64_t brick, bool cubic, Brick& entry)
@@ -187,6 +292,8 @@ void CellCache::resizeGLObjectBuffers(unsigned int maximum)
     for (auto& brick : _bricks)
         for (auto& cells : brick.second.cells)
             if (cells.second->texture) cells.second->texture->resizeGLObjectBuffers(maximum);
+    for (auto& joined : _joined)
+        joined.cells->texture->resizeGLObjectBuffers(maximum);
 }
 
 void CellCache::releaseGLObjects(osg::State* state) const
@@ -195,6 +302,8 @@ void CellCache::releaseGLObjects(osg::State* state) const
     for (const auto& brick : _bricks)
         for (const auto& cells : brick.second.cells)
             if (cells.second->texture) cells.second->texture->releaseGLObjects(state);
+    for (const auto& joined : _joined)
+        joined.cells->texture->releaseGLObjects(state);
 }
 
 } // namespace render

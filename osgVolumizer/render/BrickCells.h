@@ -15,6 +15,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 namespace osgVolumizer {
 namespace render {
@@ -30,6 +32,9 @@ struct BrickCells
     float cellSize = 1.0f;
     /// In the box: all cells, and those that show something.
     std::int64_t cellCount = 0, occupiedCount = 0;
+    /// What is marched through where empty cells are leapt over from both ends of a ray, voxels:
+    /// mean over rays along the axes.
+    double spannedVolume = 0.0;
 };
 
 /// What decides which values are shown.
@@ -55,6 +60,11 @@ public:
     /// Reads the brick on the first call. Null where the source fails.
     std::shared_ptr<const BrickCells> get(const Voxels& voxels, std::int64_t brick,
                                           const OccupancyQuery& query);
+    using Part = std::pair<std::int64_t, std::shared_ptr<const BrickCells>>;
+    /// The cells of all bricks as of one: of these, by number, as get() gave them, and of those
+    /// asked for before. Cells of other bricks show nothing.
+    std::shared_ptr<const BrickCells> join(const Voxels& voxels, const OccupancyQuery& query,
+                                           const std::vector<Part>& parts);
     void resizeGLObjectBuffers(unsigned int maximum);
     void releaseGLObjects(osg::State* state) const;
 
@@ -77,12 +87,21 @@ private:
         std::shared_ptr<const core::LayerRanges> layers;
         std::list<std::pair<Key, std::shared_ptr<const BrickCells>>> cells; ///< most recent first
     };
+    struct Joined
+    {
+        Key key;
+        unsigned layoutCount = 0;
+        std::map<std::int64_t, std::shared_ptr<const BrickCells>> parts;
+        std::shared_ptr<const BrickCells> cells;
+    };
     static constexpr std::size_t CAPACITY = 3;
 
+    static Key keyOf(const Voxels& voxels, const OccupancyQuery& query);
     static bool scan(const Voxels& voxels, std::int64_t brick, bool cubic, Brick& entry);
 
     mutable std::mutex _mutex;
     std::map<std::int64_t, Brick> _bricks;
+    std::list<Joined> _joined; ///< most recent first
 };
 
 } // namespace render

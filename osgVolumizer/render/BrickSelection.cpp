@@ -1,5 +1,7 @@
 #include "BrickSelection.h"
 
+#include "BrickJoining.h"
+
 #include <osgUtil/CullVisitor>
 
 #include <atomic>
@@ -35,19 +37,23 @@ OccupancyQuery queryOf(const VolumeInstance& volume, const Voxels& voxels)
 
 // Cuts a brick down to where it shows something; false where that is nowhere.
 bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickTextures& textures,
-                   const OccupancyQuery& query, SelectedBrick& brick)
+                   const OccupancyQuery& query, SelectedBrick& brick, LeftOutBricks& leftOut)
 {
     if (voxels.getComponents() == 1) {
         const auto values = voxels.getBrickRange(brick.index);
         if (!(values.first <= values.second) ||
             !showsValues(voxels, query, values.first, values.second)) {
             ++volume.emptyBricks;
+            leftOut.empty.push_back(brick.index);
             return false;
         }
     }
     if (!volume.prepared->voxelFrame || !skips) return true;
     brick.cells = textures.cells().get(voxels, brick.index, query);
-    if (!brick.cells) return false;
+    if (!brick.cells) {
+        leftOut.unreadable = true;
+        return false;
+    }
     volume.cellSize = brick.cells->cellSize;
     volume.cellCount += brick.cells->cellCount;
     volume.occupiedCells += brick.cells->occupiedCount;
@@ -57,6 +63,7 @@ bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickTextures& 
         brick.box = intersection(brick.box, brick.cells->box);
     if (brick.box.empty()) {
         ++volume.emptyBricks;
+        leftOut.cutAway.push_back(brick.index);
         return false;
     }
     volume.homogeneousBricks += brick.cells->homogeneous;
@@ -88,6 +95,7 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVis
     const PreparedGeometry& prepared = *volume.prepared;
     const ProgramFeatures& features = volume.look->features;
     const OccupancyQuery query = queryOf(volume, voxels);
+    LeftOutBricks leftOut;
     for (std::int64_t i = 0; i < layout.brickCount(); ++i) {
         const core::BrickPlace place = layout.brick(i);
         const glm::vec3 size(place.samples.size());
@@ -102,11 +110,15 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVis
             if (visitor.isCulled(objectBounds(brick.box, prepared.frameToObject))) continue;
         }
         // Gathered rays count every value, shown or not.
-        if (!features.gathers() && !cutToOccupied(volume, voxels, *textures, query, brick))
+        if (!features.gathers() && !cutToOccupied(volume, voxels, *textures, query, brick, leftOut))
             continue;
         brick.texture = textures->get(voxels, i, features.gradientTexture);
-        if (brick.texture.texture) volume.bricks.push_back(std::move(brick));
+        if (brick.texture.texture)
+            volume.bricks.push_back(std::move(brick));
+        else
+            leftOut.unreadable = true;
     }
+    joinBricks(volume, voxels, query, leftOut, visitor);
 }
 
 } // namespace render

@@ -162,21 +162,24 @@ VoxelBlock withGradients(const VoxelBlock& block, const glm::ivec3& size, TexelF
     }
 }
 
-BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick, bool gradients)
+// What samples become in a texture.
+osg::ref_ptr<osg::Image> makeImage(const Voxels& voxels, VoxelBlock block, const glm::ivec3& size,
+                                   bool gradients)
 {
-    VoxelBlock block = voxels.getBrick(brick);
-    if (!block.data) return {};
     TexelFormat format = texelFormat(voxels.getType(), voxels.getComponents());
     block = texelsOf(voxels, block, format);
-    const glm::ivec3 size = voxels.getLayout().brick(brick).samples.size();
     if (gradients) block = withGradients(block, size, format);
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->setImage(size.x, size.y, size.z, static_cast<GLint>(format.internalFormat),
                     voxels.getComponents() == 1 && !gradients ? GL_RED : GL_RGBA, format.dataType,
                     const_cast<unsigned char*>(block.data), osg::Image::NO_DELETE, 1);
     image->setUserData(new BlockHolder(block.owner));
-    osg::ref_ptr<osg::Texture3D> texture = new osg::Texture3D(image);
-    texture->setInternalFormat(static_cast<GLint>(format.internalFormat));
+    return image;
+}
+
+osg::ref_ptr<osg::Texture3D> linearTexture()
+{
+    osg::ref_ptr<osg::Texture3D> texture = new osg::Texture3D;
     texture->setResizeNonPowerOfTwoHint(false);
     texture->setUnRefImageDataAfterApply(false);
     texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
@@ -184,12 +187,26 @@ BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick, bool gradient
     for (auto axis : {osg::Texture::WRAP_S, osg::Texture::WRAP_T, osg::Texture::WRAP_R})
         texture->setWrap(axis, osg::Texture::CLAMP_TO_EDGE);
     texture->setDataVariance(osg::Object::STATIC);
-    return {texture, block.bytes};
+    return texture;
 }
 
-// The values that are read stay the same.
-void makeFloat(osg::Texture3D& texture)
+BrickTexture makeTexture(const Voxels& voxels, std::int64_t brick, bool gradients)
 {
+    const VoxelBlock block = voxels.getBrick(brick);
+    if (!block.data) return {};
+    const glm::ivec3 size = voxels.getLayout().brick(brick).samples.size();
+    const osg::ref_ptr<osg::Image> image = makeImage(voxels, block, size, gradients);
+    const osg::ref_ptr<osg::Texture3D> texture = linearTexture();
+    texture->setImage(image);
+    texture->setInternalFormat(image->getInternalTextureFormat());
+    return {texture, image->getTotalSizeInBytes()};
+}
+
+} // namespace
+
+void suitFormat(osg::Texture3D& texture, const ContextLimits& limits)
+{
+    if (!limits.filtersFloatsBest) return;
     switch (texture.getInternalFormat()) {
     case GL_R8:
     case GL_R16:
@@ -205,8 +222,6 @@ void makeFloat(osg::Texture3D& texture)
         break;
     }
 }
-
-} // namespace
 
 osg::ref_ptr<BrickTextures> BrickTextures::of(const Voxels& voxels)
 {
@@ -225,6 +240,28 @@ BrickTexture BrickTextures::get(const Voxels& voxels, std::int64_t brick, bool g
     return entry.brick;
 }
 
+osg::ref_ptr<JoinedTexture> BrickTextures::joined(const Voxels& voxels, const osg::Image& like,
+                                                  bool gradients)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    JoinedEntry& entry = _joined[gradients];
+    if (!entry.texture || entry.layoutCount != voxels.getLayoutCount())
+        entry = {new JoinedTexture(linearTexture(), voxels.getSize(), like),
+                 voxels.getLayoutCount()};
+    return entry.texture;
+}
+
+osg::ref_ptr<const osg::Image> BrickTextures::texel(const Voxels& voxels, double value,
+                                                    bool gradients)
+{
+    const std::vector<double> values(static_cast<std::size_t>(voxels.getComponents()), value);
+    auto texel = std::make_shared<std::vector<unsigned char>>(values.size() *
+                                                              voxelTypeSize(voxels.getType()));
+    core::convertVoxels(values.data(), VoxelType::FLOAT64, texel->data(), voxels.getType(),
+                        values.size());
+    return makeImage(voxels, {texel, texel->data(), texel->size()}, glm::ivec3(1), gradients);
+}
+
 void BrickTextures::resizeGLObjectBuffers(unsigned int maximum)
 {
     _cells.resizeGLObjectBuffers(maximum);
@@ -234,6 +271,8 @@ void BrickTextures::resizeGLObjectBuffers(unsigned int maximum)
             entry.second.brick.texture->resizeGLObjectBuffers(maximum);
             resizeCoarseTextures(*entry.second.brick.texture, maximum);
         }
+    for (auto& entry : _joined)
+        entry.second.texture->texture()->resizeGLObjectBuffers(maximum);
 }
 
 void BrickTextures::releaseGLObjects(osg::State* state) const
@@ -245,6 +284,8 @@ void BrickTextures::releaseGLObjects(osg::State* state) const
             entry.second.brick.texture->releaseGLObjects(state);
             releaseCoarseTextures(*entry.second.brick.texture, state);
         }
+    for (const auto& entry : _joined)
+        entry.second.texture->texture()->releaseGLObjects(state);
 }
 
 CoarseTexture applyBrick(osg::RenderInfo& renderInfo, const ContextLimits& limits,
@@ -258,7 +299,7 @@ CoarseTexture applyBrick(osg::RenderInfo& renderInfo, const ContextLimits& limit
         };
         add("osgVolumizer bricks uploaded", 1.0);
         add("osgVolumizer bytes uploaded", static_cast<double>(brick.bytes));
-        if (limits.filtersFloatsBest) makeFloat(*fitting.texture);
+        suitFormat(*fitting.texture, limits);
     }
     state.applyTextureAttribute(unit, fitting.texture.get());
     return fitting;

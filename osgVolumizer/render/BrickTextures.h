@@ -3,6 +3,7 @@
 #include "BrickCells.h"
 #include "CoarseTexture.h"
 #include "ContextLimits.h"
+#include "JoinedTexture.h"
 
 #include "../Voxels.h"
 
@@ -37,6 +38,12 @@ public:
     /// differences in red, green and blue, see gradientDecode(), and the value in alpha.
     BrickTexture get(const Voxels& voxels, std::int64_t brick, bool gradients = false);
 
+    /// The texture for all bricks, made like one brick's image on the first call.
+    osg::ref_ptr<JoinedTexture> joined(const Voxels& voxels, const osg::Image& like,
+                                       bool gradients);
+    /// One texel as bricks have them where all their samples have a value.
+    osg::ref_ptr<const osg::Image> texel(const Voxels& voxels, double value, bool gradients);
+
     CellCache& cells() { return _cells; }
 
     void resizeGLObjectBuffers(unsigned int maximum) override;
@@ -52,12 +59,22 @@ private:
     CellCache _cells;
     mutable std::mutex _mutex;
     std::map<std::pair<std::int64_t, bool>, Entry> _entries; ///< with and without gradients
+    struct JoinedEntry
+    {
+        osg::ref_ptr<JoinedTexture> texture;
+        unsigned layoutCount = 0;
+    };
+    std::map<bool, JoinedEntry> _joined; ///< likewise
 };
 
 /// Applies a brick's texture to a texture unit, as large and in such a format as suits the context;
 /// counts what is uploaded. Call in the draw thread. Returns the texture applied.
 CoarseTexture applyBrick(osg::RenderInfo& renderInfo, const ContextLimits& limits,
                          const BrickTexture& brick, unsigned unit);
+
+/// Gives a texture, before it is made in a context, the format whose filter suits that. What is
+/// read stays the same.
+void suitFormat(osg::Texture3D& texture, const ContextLimits& limits);
 
 /// Scale and offset from a texel, as the shader reads it, to the fraction of the voxels' range.
 glm::dvec2 texelToRangeFraction(const Voxels& voxels);

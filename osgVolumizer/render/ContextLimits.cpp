@@ -59,6 +59,17 @@ ContextLimits queryContextLimits(osg::State& state)
     return limits;
 }
 
+int texture3DSizeOf(unsigned contextId)
+{
+    const osg::GLExtensions* gl = osg::GLExtensions::Get(contextId, false);
+    if (!gl) return 0;
+    ContextLimits limits;
+    limits.texture3DSize = gl->maxTexture3DSize;
+    std::lock_guard<std::mutex> lock(mockMutex());
+    if (mock()) mock()(limits);
+    return limits.texture3DSize;
+}
+
 void mockContextLimits(std::function<void(ContextLimits&)> change)
 {
     std::lock_guard<std::mutex> lock(mockMutex());

@@ -26,6 +26,10 @@ struct ContextLimits
 /// Asks the current context.
 ContextLimits queryContextLimits(osg::State& state);
 
+/// Largest side of a 3D texture of a context, by what OSG knows of it, so in any thread; 0 where it
+/// does not yet.
+int texture3DSizeOf(unsigned contextId);
+
 /// For tests: what every context asked from now on is made to say instead; an empty function ends
 /// it. Contexts that have been asked before stay as they are.
 void mockContextLimits(std::function<void(ContextLimits&)> change);

@@ -64,6 +64,7 @@ struct AccumulationBuffers
     int width = 0, height = 0;
     GLenum colorFormat = 0, depthFormat = 0;
     GLuint framebuffer = 0, layerFramebuffer = 0;
+    bool hasOpaqueDepth = false;   ///< of this frame; else nothing opaque was drawn
     GLuint resolveFramebuffer = 0; ///< of opaqueDepth, for framebuffers with several samples
     osg::ref_ptr<osg::Texture2D> color, depth, opaqueDepth, layerDepth;
     LayerBuffers layers;

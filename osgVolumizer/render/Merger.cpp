@@ -3,6 +3,7 @@
 #include "Matrices.h"
 #include "MergeGroups.h"
 #include "Paint.h"
+#include "ScreenAreas.h"
 #include "Statistics.h"
 
 #include "../core/ordering/BrickOrder.h"
@@ -130,6 +131,51 @@ bool isDepthWritten(const std::vector<osgUtil::RenderLeaf*>& leaves,
     });
 }
 
+bool anyWritesDepth(const osgUtil::RenderBin& bin)
+{
+    auto& b = const_cast<osgUtil::RenderBin&>(bin);
+    const auto& leaves = b.getRenderLeafList();
+    const auto& graphs = b.getStateGraphList();
+    return b.getDrawCallback() ||
+           std::any_of(
+               leaves.begin(), leaves.end(),
+               [](const osgUtil::RenderLeaf* leaf) { return writesDepth(leaf->_parent); }) ||
+           std::any_of(graphs.begin(), graphs.end(), [](const osgUtil::StateGraph* graph) {
+               return !graph->_leaves.empty() && writesDepth(graph);
+           });
+}
+
+// What is drawn from a bin before `end` is: whether it finds the bin, and whether depth was
+// written.
+struct DrawnBefore
+{
+    bool found = false, depthWritten = false;
+};
+
+void visitInDrawOrder(const osgUtil::RenderBin& bin, const osgUtil::RenderBin& end,
+                      DrawnBefore& drawn)
+{
+    const auto& nested = const_cast<osgUtil::RenderBin&>(bin).getRenderBinList();
+    for (auto i = nested.begin(); i != nested.end() && i->first < 0 && !drawn.found; ++i)
+        visitInDrawOrder(*i->second, end, drawn);
+    drawn.found = drawn.found || &bin == &end;
+    if (drawn.found) return;
+    drawn.depthWritten = drawn.depthWritten || anyWritesDepth(bin);
+    for (auto i = nested.lower_bound(0); i != nested.end() && !drawn.found; ++i)
+        visitInDrawOrder(*i->second, end, drawn);
+}
+
+// Whether the depth buffer is known to hold nothing but 1 when the bin's own leaves come.
+bool isDepthClearedBefore(const osgUtil::RenderBin& bin)
+{
+    const auto* stage = const_cast<osgUtil::RenderBin&>(bin).getStage();
+    if (!stage || !(stage->getClearMask() & GL_DEPTH_BUFFER_BIT) || stage->getClearDepth() != 1.0)
+        return false;
+    DrawnBefore drawn;
+    visitInDrawOrder(*stage, bin, drawn);
+    return drawn.found && !drawn.depthWritten;
+}
+
 } // namespace
 
 Merger* Merger::of(osgUtil::RenderBin& innermost, osgUtil::CullVisitor& visitor)
@@ -138,7 +184,10 @@ Merger* Merger::of(osgUtil::RenderBin& innermost, osgUtil::CullVisitor& visitor)
     while (sortsByDepth(outermost) && sortsByDepth(outermost->getParent()))
         outermost = outermost->getParent();
     osgUtil::RenderBin& bin = *outermost;
-    if (auto* merger = dynamic_cast<Merger*>(bin.getSortCallback())) return merger;
+    if (auto* merger = dynamic_cast<Merger*>(bin.getSortCallback())) {
+        if (*merger->_viewport != *visitor.getViewport()) merger->_oneViewport = false;
+        return merger;
+    }
     osg::ref_ptr<Merger> merger = new Merger;
     merger->_chained = bin.getSortCallback();
     merger->_camera = visitor.getCurrentCamera();
@@ -168,13 +217,13 @@ void Merger::sortImplementation(osgUtil::RenderBin* bin)
             leaves.insert(leaves.end(), nested.begin(), nested.end());
             nested.clear();
         }
-        merge(leaves, visible, counts);
+        merge(*bin, leaves, visible, counts);
     }
     report(counts);
 }
 
-void Merger::merge(LeafList& leaves, const std::vector<VolumeInstance*>& visible,
-                   FrameCounts& counts)
+void Merger::merge(const osgUtil::RenderBin& bin, LeafList& leaves,
+                   const std::vector<VolumeInstance*>& visible, FrameCounts& counts)
 {
     std::vector<VolumeInstance*> merged = visible;
     applyPaint(merged);
@@ -196,17 +245,17 @@ void Merger::merge(LeafList& leaves, const std::vector<VolumeInstance*>& visible
         for (const ForeignLeaf* surface : group.surfaces)
             replaced.insert(&surface->leaf());
 
-    const glm::ivec4 viewport(_viewport->x(), _viewport->y(), _viewport->width(),
-                              _viewport->height());
     const osg::ref_ptr<Accumulation> accumulation = makeAccumulation();
     std::vector<OrderedLeaf> made;
     for (const MergeGroup& group : groups.groups)
-        GroupComposer(group, viewport, *accumulation, counts).compose(made);
+        GroupComposer(group, viewport(), *accumulation, counts).compose(made);
     for (const VolumeInstance* volume : visible)
-        counts.bricksDrawn += static_cast<double>(volume->bricks.size());
+        for (const SelectedBrick& brick : volume->bricks)
+            counts.bricksDrawn += brick.brickCount;
     if (!made.empty()) {
         if (isDepthWritten(leaves, replaced, made)) accumulation->keepDepth();
-        addAccumulation(*accumulation, *visible.front()->leaf, viewport, made);
+        if (groups.surfaces.empty()) leaveOut(bin, leaves, visible, made, *accumulation);
+        addAccumulation(*accumulation, *visible.front()->leaf, viewport(), made);
     }
 
     std::vector<OrderedLeaf> all;
@@ -218,6 +267,35 @@ void Merger::merge(LeafList& leaves, const std::vector<VolumeInstance*>& visible
     leaves.clear();
     for (const OrderedLeaf& leaf : all)
         leaves.push_back(leaf.leaf);
+}
+
+// What need not be copied where volumes are drawn by themselves.
+void Merger::leaveOut(const osgUtil::RenderBin& bin, const LeafList& leaves,
+                      const std::vector<VolumeInstance*>& visible,
+                      const std::vector<OrderedLeaf>& made, Accumulation& accumulation) const
+{
+    const auto ends = std::minmax_element(made.begin(), made.end(), isNearer);
+    const double nearest = ends.first->depth, farthest = ends.second->depth;
+    bool alone = true, cleared = isDepthClearedBefore(bin);
+    for (const osgUtil::RenderLeaf* leaf : leaves) {
+        if (dynamic_cast<const VolumeDrawable*>(leaf->getDrawable())) continue;
+        alone = alone && !(leaf->_depth >= nearest && leaf->_depth <= farthest);
+        cleared = cleared && (leaf->_depth < nearest || !writesDepth(leaf->_parent));
+    }
+    if (alone && cleared) accumulation.expectClearedDepth();
+    if (!alone || !_oneViewport) return;
+    ScreenRectangle screen = viewOf(*visible.front()).screen;
+    for (const VolumeInstance* volume : visible) {
+        const ScreenRectangle other = viewOf(*volume).screen;
+        screen.min = glm::min(screen.min, other.min);
+        screen.max = glm::max(screen.max, other.max);
+    }
+    accumulation.restrictTo(pixelRectangle(screen, viewport(), 4));
+}
+
+glm::ivec4 Merger::viewport() const
+{
+    return {_viewport->x(), _viewport->y(), _viewport->width(), _viewport->height()};
 }
 
 // Also takes the leaves of volumes that are not to be seen out of their bins.
@@ -249,10 +327,7 @@ Merger::visibleVolumes(const std::vector<osgUtil::RenderBin*>& bins) const
 osg::ref_ptr<Accumulation> Merger::makeAccumulation() const
 {
     AccumulationSettings settings;
-    settings.x = static_cast<int>(_viewport->x());
-    settings.y = static_cast<int>(_viewport->y());
-    settings.width = static_cast<int>(_viewport->width());
-    settings.height = static_cast<int>(_viewport->height());
+    settings.viewport = viewport();
     settings.bits = 8;
     for (const auto& volume : _volumes)
         settings.bits = std::max(settings.bits, volume->appearance->getAccumulationBits());

@@ -38,7 +38,12 @@ private:
     using LeafList = osgUtil::RenderBin::RenderLeafList;
 
     std::vector<VolumeInstance*> visibleVolumes(const std::vector<osgUtil::RenderBin*>& bins) const;
-    void merge(LeafList& leaves, const std::vector<VolumeInstance*>& visible, FrameCounts& counts);
+    glm::ivec4 viewport() const;
+    void merge(const osgUtil::RenderBin& bin, LeafList& leaves,
+               const std::vector<VolumeInstance*>& visible, FrameCounts& counts);
+    void leaveOut(const osgUtil::RenderBin& bin, const LeafList& leaves,
+                  const std::vector<VolumeInstance*>& visible, const std::vector<OrderedLeaf>& made,
+                  Accumulation& accumulation) const;
     osg::ref_ptr<Accumulation> makeAccumulation() const;
     void report(const FrameCounts& counts) const;
 
@@ -46,7 +51,8 @@ private:
     osg::ref_ptr<osgUtil::RenderBin::SortCallback> _chained;
     osg::observer_ptr<const osg::Camera> _camera; ///< holds the bin, and so this
     osg::ref_ptr<const osg::FrameStamp> _frameStamp;
-    osg::ref_ptr<const osg::Viewport> _viewport;
+    osg::ref_ptr<const osg::Viewport> _viewport; ///< of the volume that came first
+    bool _oneViewport = true;                    ///< is that of all volumes
 };
 
 } // namespace render

@@ -41,11 +41,9 @@ BrickBatch batchOf(const SelectedBrick& brick)
     batch.brickMin = glm::vec3(brick.clipBox.min);
     batch.brickMax = glm::vec3(brick.clipBox.max);
     batch.cells = brick.cells;
+    batch.joined = brick.joined;
     batch.textureScale = brick.textureScale;
-    batch.brickMin = glm::vec3(brick.clipBox.min);
-    batch.brickMax = glm::vec3(brick.clipBox.max);
     batch.textureOffset = brick.textureOffset;
-    batch.cells = brick.cells;
     return batch;
 }
 

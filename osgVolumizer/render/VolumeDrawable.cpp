@@ -110,6 +110,7 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
 {
     const ProgramFeatures& features = look.features;
     const AccumulationBuffers& buffers = resources.accumulation;
+    uniforms.set("opaqueDrawn", buffers.hasOpaqueDepth ? 1 : 0);
     if (!buffers.opaqueDepth) return;
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
     if (features.layerDepth)
@@ -187,7 +188,11 @@ void drawBatch(osg::RenderInfo& renderInfo, const ContextLimits& limits, const U
                const ProgramFeatures& features, const BrickBatch& batch)
 {
     osg::State& state = *renderInfo.getState();
-    if (batch.texture) {
+    if (batch.joined) {
+        batch.joined->texture->apply(renderInfo, limits, batch.joined->pieces, UNIT_VOXELS);
+        uniforms.set("textureScale", batch.textureScale);
+        uniforms.set("textureOffset", batch.textureOffset);
+    } else if (batch.texture) {
         const CoarseTexture voxels =
             applyBrick(renderInfo, limits, {batch.texture, batch.textureBytes}, UNIT_VOXELS);
         uniforms.set("textureScale", batch.textureScale * voxels.scale);

@@ -23,11 +23,13 @@ namespace osgVolumizer {
 namespace render {
 
 struct BrickCells;
+struct JoinedBricks;
 
 /// What is drawn from one brick: a run of triangles, and the place of the brick.
 struct BrickBatch
 {
-    osg::ref_ptr<osg::Texture3D> texture; ///< null without voxels
+    osg::ref_ptr<osg::Texture3D> texture;       ///< null without voxels
+    std::shared_ptr<const JoinedBricks> joined; ///< where it is the texture of several bricks
     std::size_t textureBytes = 0;
     std::shared_ptr<const BrickCells> cells;           ///< null where nothing is known
     glm::vec3 clipMin{0.0f}, clipMax{0.0f};            ///< frame; of what is drawn

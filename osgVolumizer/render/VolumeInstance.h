@@ -24,7 +24,9 @@ struct SelectedBrick
     core::Box3d clipBox; ///< voxel frame
     BrickTexture texture;
     glm::vec3 textureScale{1.0f}, textureOffset{0.0f};
-    std::shared_ptr<const BrickCells> cells; ///< null where nothing is known
+    std::shared_ptr<const BrickCells> cells;    ///< null where nothing is known
+    std::shared_ptr<const JoinedBricks> joined; ///< null for one brick with a texture of its own
+    int brickCount = 1;                         ///< how many it stands for
 };
 
 /// One volume in one view of one frame, from cull to sort.

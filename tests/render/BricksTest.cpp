@@ -75,7 +75,7 @@ TEST_P(Bricks, OneEightAndSixtyFourShowTheSame)
         for (const int perAxis : {1, 2, 4}) {
             ASSERT_TRUE(voxels->setBrickSize(glm::ivec3((SIZE - 1) / perAxis + 1)));
             ASSERT_EQ(voxels->getLayout().brickCount(), perAxis * perAxis * perAxis);
-            const FloatImage image = support::renderScene(twin.node, all[v]);
+            FloatImage image = support::renderScene(twin.node, all[v]);
             support::savePicture(image, "bricks_" + std::to_string(GetParam()) + "_view" +
                                             std::to_string(v) + "_" + std::to_string(perAxis));
             if (perAxis == 1) {
@@ -83,9 +83,14 @@ TEST_P(Bricks, OneEightAndSixtyFourShowTheSame)
                 EXPECT_GT(support::coveredPixels(image, 0.3f).count(), 1000u);
                 continue;
             }
-            const support::Difference d = compare(image, whole);
-            EXPECT_LT(d.maximum, 1e-4) << "view " << v << ", " << perAxis << " bricks per axis, at "
-                                       << d.worstX << " " << d.worstY;
+            for (const bool joined : {true, false}) {
+                const JoiningScope scope(joined);
+                if (!joined) image = support::renderScene(twin.node, all[v]);
+                const support::Difference d = compare(image, whole);
+                EXPECT_LT(d.maximum, joined && slabs ? 1e-6 : 1e-4)
+                    << "view " << v << ", " << perAxis << " bricks per axis, at " << d.worstX << " "
+                    << d.worstY << (joined ? ", joined" : "");
+            }
         }
     }
 }
@@ -98,9 +103,11 @@ TEST_P(Bricks, UnevenOnesAgreeWithTheOracle)
     TwinVolume twin = makeTwin(voxels, smoothPoints(0.05), GetParam());
     twin.setPeriod(0.25);
     const RenderOptions options = view({40, -30, 30}, {8, 12, 6}, 45.0);
-    const FloatImage image = support::renderScene(twin.node, options);
     const FloatImage expected = oraclePicture(oracleScene(twin.oracle), options);
-    EXPECT_LT(compare(image, expected).rmse, 2e-3);
+    for (const bool joined : {true, false}) {
+        const JoiningScope scope(joined);
+        EXPECT_LT(compare(support::renderScene(twin.node, options), expected).rmse, 2e-3);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Techniques, Bricks,

@@ -5,7 +5,9 @@
 #include <osgVolumizer/core/voxels/VoxelData.h>
 
 #include <support/GLTest.h>
+#include <support/Shapes.h>
 
+#include <osg/Depth>
 #include <osg/Group>
 
 #include <atomic>
@@ -211,6 +213,49 @@ TEST_P(Counters, SharedVoxelsAreUploadedOnce)
     renderer.render();
     EXPECT_EQ(value(renderer, "bricks total"), 128);
     EXPECT_EQ(value(renderer, "bricks uploaded"), 64);
+}
+
+TEST_P(Counters, OnlyWhatIsNeededOfTheFramebufferIsCopied)
+{
+    const double pixels = 128.0 * 128.0;
+    for (const auto format : {support::PictureTarget::FLOAT32, support::PictureTarget::BYTE}) {
+        const bool target = format == support::PictureTarget::BYTE;
+        osg::ref_ptr<osg::Group> scene = new osg::Group;
+        scene->addChild(_twin.node);
+        RenderOptions options = view();
+        options.size(128, 128).perspective(70.0);
+        options.format = format;
+        support::SceneRenderer renderer(scene, options);
+        const FloatImage alone = renderer.render();
+        EXPECT_GT(support::coveredPixels(alone, 0.2f).count(), 500u);
+        // Nothing opaque, so no depth; and only the colours about the volume, there and back.
+        EXPECT_EQ(value(renderer, "depths copied"), 0.0);
+        const double colors = value(renderer, "colors copied");
+        EXPECT_LT(colors, target ? 1.5 * pixels : 1.0);
+        EXPECT_GE(colors, target ? 2.0 * double(support::coveredPixels(alone).count()) : 0.0);
+
+        // Opaque geometry, drawn before the volume, in it: depths about the volume.
+        const osg::ref_ptr<osg::Node> quad = support::makeQuad(
+            {osg::Vec3(4, 16, 4), {28, 15, 4}, {28, 15, 28}, {4, 16, 28}}, {0.2f, 0.8f, 0.3f, 1});
+        scene->addChild(quad);
+        EXPECT_GT(compare(renderer.render(), alone).maximum, 0.1);
+        EXPECT_GT(value(renderer, "depths copied"), 0.0);
+        EXPECT_LT(value(renderer, "depths copied"), 0.75 * pixels);
+        // What leaves no depth is as if it were not there...
+        quad->getOrCreateStateSet()->setAttributeAndModes(
+            new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
+        renderer.render();
+        EXPECT_EQ(value(renderer, "depths copied"), 0.0);
+        // ...and so is what comes later.
+        quad->setStateSet(nullptr);
+        quad->getOrCreateStateSet()->setRenderBinDetails(20, "RenderBin");
+        renderer.render();
+        EXPECT_EQ(value(renderer, "depths copied"), 0.0);
+        // A depth buffer that is not cleared may hold anything.
+        renderer.viewer().getCamera()->setClearMask(GL_COLOR_BUFFER_BIT);
+        renderer.render();
+        EXPECT_GT(value(renderer, "depths copied"), 0.0);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Techniques, Counters,

@@ -51,6 +51,7 @@ protected:
     }
 
     static constexpr double ALPHA = 1e-4;
+    JoiningScope _oneByOne{false};
     TwinVolume _twin;
 };
 

@@ -154,8 +154,11 @@ TEST_F(Interpolation, BricksShowNoSeams)
         bricks->setBrickSize(glm::ivec3(17));
         bricks->setOverlap(volume->getRequiredOverlap());
         volume->setVoxels(bricks);
-        const auto d = support::compare(support::renderScene(volume, options), one);
-        EXPECT_LT(d.rmse, kind == VolumeAppearance::NEAREST ? 2e-3 : 1e-5) << kind;
+        for (const bool joined : {true, false}) {
+            const JoiningScope scope(joined);
+            const auto d = support::compare(support::renderScene(volume, options), one);
+            EXPECT_LT(d.rmse, kind == VolumeAppearance::NEAREST ? 2e-3 : 1e-5) << kind;
+        }
     }
 }
 

@@ -107,14 +107,17 @@ TEST_F(RayFunction, DoesNotDependOnBricks)
         osg::ref_ptr<Voxels> bricks = makeVoxels(glm::ivec3(SIZE), bumps);
         bricks->setBrickSize(glm::ivec3(9));
         twin.node->setVoxels(bricks);
-        const FloatImage many = support::renderScene(twin.node, view());
-        const double rmse = support::compare(many, one).rmse;
-        EXPECT_LT(rmse, surface ? 0.1 : 1e-4) << function;
-        // A surface that is grazed may be missed by one of them.
-        int wrong = 0;
-        for (std::size_t i = 0; i < one.pixels.size(); ++i)
-            wrong += glm::length(many.pixels[i] - one.pixels[i]) > 5e-3f;
-        EXPECT_LE(wrong, surface ? 10 : 0) << function;
+        for (const bool joined : {true, false}) {
+            const JoiningScope scope(joined);
+            const FloatImage many = support::renderScene(twin.node, view());
+            const double rmse = support::compare(many, one).rmse;
+            EXPECT_LT(rmse, surface ? 0.1 : 1e-4) << function;
+            // A surface that is grazed may be missed by one of them.
+            int wrong = 0;
+            for (std::size_t i = 0; i < one.pixels.size(); ++i)
+                wrong += glm::length(many.pixels[i] - one.pixels[i]) > 5e-3f;
+            EXPECT_LE(wrong, surface && !joined ? 10 : 0) << function;
+        }
     }
 }
 

@@ -246,7 +246,10 @@ TEST_F(Shading, BricksWithEnoughOverlapShowNoSeams)
         bricks->setBrickSize(glm::ivec3(12));
         bricks->setOverlap(twin.node->getRequiredOverlap());
         twin.node->setVoxels(bricks);
-        EXPECT_LT(support::compare(support::renderScene(twin.node, view()), one).rmse, 1e-4);
+        for (const bool joined : {true, false}) {
+            const JoiningScope scope(joined);
+            EXPECT_LT(support::compare(support::renderScene(twin.node, view()), one).rmse, 1e-4);
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/VolumeGeometry.h>
+#include <osgVolumizer/render/BrickJoining.h>
 
 #include <oracles/Grid.h>
 #include <oracles/Scene.h>
@@ -133,6 +134,16 @@ inline Points smoothPoints(double opacity)
 {
     return {{0.0, {0.1, 0.2, 0.9, 0.0}}, {1.0, {1.0, 0.5, 0.1, opacity}}};
 }
+
+/// Whether bricks may be joined in one texture, for as long as it lives.
+class JoiningScope
+{
+public:
+    explicit JoiningScope(bool on) { render::setJoining(on); }
+    ~JoiningScope() { render::setJoining(true); }
+    JoiningScope(const JoiningScope&) = delete;
+    JoiningScope& operator=(const JoiningScope&) = delete;
+};
 
 /// Something with detail in all directions and no symmetry, between 0 and 1.
 inline double bumps(const glm::dvec3& p)

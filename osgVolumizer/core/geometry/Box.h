@@ -54,6 +54,17 @@ struct Box3i
     bool operator==(const Box3i& o) const { return min == o.min && max == o.max; }
 };
 
+/// The overlap of two ranges; empty where they have nothing in common.
+inline Box3i intersection(const Box3i& a, const Box3i& b)
+{
+    Box3i r;
+    for (int i = 0; i < 3; ++i) {
+        r.min[i] = a.min[i] > b.min[i] ? a.min[i] : b.min[i];
+        r.max[i] = a.max[i] < b.max[i] ? a.max[i] : b.max[i];
+    }
+    return r;
+}
+
 /// Half-space: the points p with dot(normal, p) + offset >= 0.
 struct Plane
 {

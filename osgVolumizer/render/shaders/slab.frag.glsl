@@ -23,6 +23,7 @@ uniform float stepsPerDepth;
 uniform float maximumSteps;
 #ifdef OPAQUE_DEPTH
 uniform sampler2D opaqueDepth;
+uniform bool opaqueDrawn; // else there is nothing to end at
 uniform vec3 clipZOrigin, clipZDirection, clipWOrigin, clipWDirection; // times (dx, dy, 1)
 #endif
 #ifdef LAYER_DEPTH
@@ -395,7 +396,7 @@ void main()
     for (int i = 0; i < PLANES; ++i) clipToPlane(planes[i], origin, direction, tNear, tFar);
 #endif
 #ifdef OPAQUE_DEPTH
-    tFar = min(tFar, depthOnRay(opaqueDepth));
+    if (opaqueDrawn) tFar = min(tFar, depthOnRay(opaqueDepth));
 #endif
 #ifdef LAYER_DEPTH
     float tLayer = depthOnRay(layerDepth);

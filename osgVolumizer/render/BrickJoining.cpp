@@ -1,0 +1,179 @@
+#include "BrickJoining.h"
+
+#include <osgUtil/CullVisitor>
+
+#include <algorithm>
+#include <atomic>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+std::atomic<bool> joins{true};
+
+// A texture for each brick lets a driver move those it does not need out of the graphics card's
+// memory; one for all does not.
+constexpr double MAXIMUM_BYTES = 1024.0 * 1024.0 * 1024.0;
+
+// What drawing a volume in many bricks costs, compared with one. Measured on llvmpipe with 64.
+constexpr double BRICKS_COST = 1.4;
+
+double volumeOf(const core::Box3d& box)
+{
+    const glm::dvec3 size = box.size();
+    return size.x * size.y * size.z;
+}
+
+core::Box3d unionOf(const std::vector<SelectedBrick>& bricks)
+{
+    core::Box3d box;
+    for (const SelectedBrick& brick : bricks) {
+        box.expand(brick.box.min);
+        box.expand(brick.box.max);
+    }
+    return box;
+}
+
+std::size_t textureBytes(const Voxels& voxels, const SelectedBrick& brick)
+{
+    const glm::dvec3 all(voxels.getSize());
+    const glm::dvec3 own(voxels.getLayout().brick(brick.index).samples.size());
+    const glm::dvec3 ratio = all / own;
+    return static_cast<std::size_t>(double(brick.texture.bytes) * ratio.x * ratio.y * ratio.z);
+}
+
+bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
+{
+    const ProgramFeatures& features = volume.look->features;
+    const core::BrickLayout& layout = voxels.getLayout();
+    if (!joins || volume.bricks.size() < 2 || !features.slab || !volume.prepared->voxelFrame ||
+        volume.appearance->getCombineRule() == VolumeAppearance::PAINT)
+        return false;
+    // Filters must find in a brick all that they need, since its neighbours may not be there.
+    if (layout.overlap() < (features.cubic ? 3 : 1)) return false;
+    const osg::State* state = visitor.getState();
+    const glm::ivec3 size = voxels.getSize();
+    return state && std::max({size.x, size.y, size.z}) <= texture3DSizeOf(state->getContextID()) &&
+           double(textureBytes(voxels, volume.bricks.front())) <= MAXIMUM_BYTES;
+}
+
+// What a brick's rays march through, in voxels.
+double marchedVolume(const SelectedBrick& brick)
+{
+    const double all = volumeOf(brick.box);
+    if (!brick.cells) return all;
+    return brick.cells->homogeneous ? 0.0 : std::min(all, brick.cells->spannedVolume);
+}
+
+bool isWorthJoining(const VolumeInstance& volume, const SelectedBrick& joined)
+{
+    double marched = 0.0;
+    for (const SelectedBrick& brick : volume.bricks)
+        marched += marchedVolume(brick);
+    return marchedVolume(joined) <= BRICKS_COST * marched;
+}
+
+JoinedPiece pieceOf(const Voxels& voxels, std::int64_t brick)
+{
+    JoinedPiece piece;
+    piece.brick = brick;
+    piece.modifiedCount = voxels.getModifiedCount(brick);
+    piece.samples = voxels.getLayout().brick(brick).samples;
+    piece.imageOrigin = piece.samples.min;
+    return piece;
+}
+
+JoinedPiece pieceOf(const Voxels& voxels, std::int64_t brick, const BrickTexture& texture,
+                    bool gradients)
+{
+    JoinedPiece piece = pieceOf(voxels, brick);
+    piece.texels = texture.texture->getImage();
+    if (!gradients || voxels.getLayout().overlap() < 3) return piece;
+    // Gradients of a brick's outermost samples have only one side; the neighbour has both.
+    const glm::ivec3 size = voxels.getSize();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (piece.samples.min[axis] > 0) ++piece.samples.min[axis];
+        if (piece.samples.max[axis] < size[axis]) --piece.samples.max[axis];
+    }
+    return piece;
+}
+
+// The pieces of bricks that are not drawn, but that rays pass; false where that cannot be done.
+bool addLeftOut(const VolumeInstance& volume, const Voxels& voxels, BrickTextures& textures,
+                const LeftOutBricks& leftOut, const core::Box3d& box,
+                std::vector<JoinedPiece>& pieces)
+{
+    const bool gradients = volume.look->features.gradientTexture;
+    const auto isPassed = [&](std::int64_t brick) {
+        return !intersection(voxels.getLayout().brick(brick).clipBox, box).empty();
+    };
+    for (const std::int64_t brick : leftOut.empty) {
+        if (!isPassed(brick)) continue;
+        const auto range = voxels.getBrickRange(brick);
+        if (!(range.first <= range.second)) return false; // no value to stand for it
+        JoinedPiece piece = pieceOf(voxels, brick);
+        piece.empty = true;
+        piece.texels = textures.texel(voxels, range.first, gradients);
+        pieces.push_back(std::move(piece));
+    }
+    for (const std::int64_t brick : leftOut.cutAway) {
+        if (!isPassed(brick)) continue;
+        const BrickTexture texture = textures.get(voxels, brick, gradients);
+        if (!texture.texture) return false;
+        pieces.push_back(pieceOf(voxels, brick, texture, gradients));
+    }
+    return true;
+}
+
+std::shared_ptr<const BrickCells> joinCells(const VolumeInstance& volume, const Voxels& voxels,
+                                            BrickTextures& textures, const OccupancyQuery& query)
+{
+    std::vector<CellCache::Part> parts;
+    for (const SelectedBrick& brick : volume.bricks) {
+        if (!brick.cells) return nullptr;
+        parts.emplace_back(brick.index, brick.cells);
+    }
+    return textures.cells().join(voxels, query, parts);
+}
+
+} // namespace
+
+void setJoining(bool on)
+{
+    joins = on;
+}
+
+void joinBricks(VolumeInstance& volume, const Voxels& voxels, const OccupancyQuery& query,
+                const LeftOutBricks& leftOut, osgUtil::CullVisitor& visitor)
+{
+    if (leftOut.unreadable || !canBeJoined(volume, voxels, visitor)) return;
+    const bool gradients = volume.look->features.gradientTexture;
+    const osg::ref_ptr<BrickTextures> textures = BrickTextures::of(voxels);
+    SelectedBrick all;
+    all.box = unionOf(volume.bricks);
+    all.cells = joinCells(volume, voxels, *textures, query);
+    if (!isWorthJoining(volume, all)) return;
+    auto joined = std::make_shared<JoinedBricks>();
+    if (!addLeftOut(volume, voxels, *textures, leftOut, all.box, joined->pieces)) return;
+    for (const SelectedBrick& brick : volume.bricks)
+        joined->pieces.push_back(pieceOf(voxels, brick.index, brick.texture, gradients));
+    const SelectedBrick& first = volume.bricks.front();
+    joined->texture = textures->joined(voxels, *first.texture.texture->getImage(), gradients);
+    const glm::vec3 size(voxels.getSize());
+    all.clipBox = voxels.getLayout().extent();
+    all.texture = {joined->texture->texture(), textureBytes(voxels, first)};
+    all.textureScale = 1.0f / size;
+    all.textureOffset = 0.5f / size;
+    all.brickCount = static_cast<int>(volume.bricks.size());
+    all.joined = std::move(joined);
+    if (all.cells) {
+        volume.cellSize = all.cells->cellSize;
+        volume.cellCount = all.cells->cellCount;
+        volume.occupiedCells = all.cells->occupiedCount;
+    }
+    volume.bricks.assign(1, std::move(all));
+}
+
+} // namespace render
+} // namespace osgVolumizer
