@@ -174,7 +174,10 @@ public:
 
     /// The root mean square error, in units of full intensity, that sampling may make in a picture;
     /// then period and kind of table are chosen by marching some random rays through the data, once
-    /// for each change of table or data (some 10 ms), and the sampling period is not used.
+    /// for each change of table or data (50 ms for a smooth table, up to 500 for a sharp one, which
+    /// needs more and finer rays), and the sampling period is not used. One choice for all views.
+    /// With jumps in the table that is the error over many views: in one of few pixels those whose
+    /// rays graze a jump may have more.
     /// Composited slabs of voxels of one component, without shading. 0 (default): as the period
     /// says.
     Status setErrorTolerance(double rootMeanSquare);

@@ -2,6 +2,7 @@
 
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/VolumeGeometry.h>
+#include <osgVolumizer/render/BrickJoining.h>
 
 namespace osgVolumizer {
 namespace bench {
@@ -12,12 +13,15 @@ namespace {
 class LibraryRenderer : public Renderer
 {
 public:
-    LibraryRenderer(bool slabs, int brickSize) : _slabs(slabs), _brickSize(brickSize) {}
+    LibraryRenderer(const LibraryOptions& options) : _options(options) {}
 
     std::string name() const override
     {
-        const std::string name = _slabs ? "osgVolumizer slabs" : "osgVolumizer slices";
-        return _brickSize ? name + " bricks " + std::to_string(_brickSize) : name;
+        std::string name = _options.slabs ? "osgVolumizer slabs" : "osgVolumizer slices";
+        if (_options.brickSize) name += " bricks " + std::to_string(_options.brickSize);
+        if (!_options.joined) name += " apart";
+        if (_options.tolerance) name += " tolerance";
+        return name;
     }
 
     Status open(const ChartScene& scene) override
@@ -32,7 +36,8 @@ public:
         if (!status.ok()) return status;
         osg::ref_ptr<Voxels> voxels = new Voxels(source);
         status = voxels->setRange(osg::Vec2d(scene.range.x, scene.range.y));
-        if (status.ok() && _brickSize) status = voxels->setBrickSize(glm::ivec3(_brickSize));
+        if (status.ok() && _options.brickSize)
+            status = voxels->setBrickSize(glm::ivec3(_options.brickSize));
         if (!status.ok()) return status;
         osg::ref_ptr<LookupTable> table = new LookupTable;
         status = table->setPoints(scene.table, LookupTable::RANGE_FRACTION);
@@ -41,7 +46,8 @@ public:
         _appearance = new VolumeAppearance;
         _appearance->setVoxels(voxels);
         _appearance->setLookupTable(table);
-        _appearance->setTechnique(_slabs ? VolumeAppearance::SLABS : VolumeAppearance::SLICES);
+        _appearance->setTechnique(_options.slabs ? VolumeAppearance::SLABS
+                                                 : VolumeAppearance::SLICES);
         _appearance->addChild(VolumeGeometry::createBox(*voxels));
         _appearance->setShading(scene.shaded);
         support::RenderOptions options = scene.view;
@@ -53,10 +59,22 @@ public:
     }
     Status setStep(double stepVoxel) override
     {
+        if (_options.tolerance) return _appearance->setErrorTolerance(1e-3 * stepVoxel);
         return _appearance->setSamplingPeriod(osg::Vec3d(stepVoxel, stepVoxel, stepVoxel));
     }
-    void frame() override { _renderer->viewer().frame(); }
-    support::FloatImage picture() override { return _renderer->render(); }
+    void frame() override
+    {
+        render::setJoining(_options.joined);
+        _renderer->viewer().frame();
+        render::setJoining(true);
+    }
+    support::FloatImage picture() override
+    {
+        render::setJoining(_options.joined);
+        support::FloatImage image = _renderer->render();
+        render::setJoining(true);
+        return image;
+    }
     std::map<std::string, double> split() override
     {
         std::map<std::string, double> result = _renderer->counters();
@@ -73,8 +91,7 @@ public:
     }
 
 private:
-    bool _slabs;
-    int _brickSize;
+    LibraryOptions _options;
     std::vector<unsigned char> _data;
     osg::ref_ptr<VolumeAppearance> _appearance;
     std::unique_ptr<support::SceneRenderer> _renderer;
@@ -82,9 +99,9 @@ private:
 
 } // namespace
 
-RendererPtr makeLibraryRenderer(bool slabs, int brickSize)
+RendererPtr makeLibraryRenderer(const LibraryOptions& options)
 {
-    return std::make_unique<LibraryRenderer>(slabs, brickSize);
+    return std::make_unique<LibraryRenderer>(options);
 }
 
 } // namespace bench

@@ -18,9 +18,11 @@ namespace {
 
 const char* const usage = R"(Usage: osgVolumizerChart [options]
   --scenes A,B,..     default all
-  --renderers A,B,..  of slabs slices slabs:BRICK slices:BRICK bare bareintegral fixed raytraced
-                      multipass vtkgpu vtkcpu; default all that were built, bricks aside
-  --steps A,B,..      sample distances in voxels, default 8,4,2,1,0.5,0.25
+  --renderers A,B,..  of slabs slices slabs:BRICK slices:BRICK apart:BRICK (bricks with a texture
+                      each) tolerance bare bareintegral fixed raytraced multipass vtkgpu vtkcpu;
+                      default all that were built, bricks and tolerance aside
+  --steps A,B,..      sample distances in voxels, default 8,4,2,1,0.5,0.25; for `tolerance`: the
+                      errors asked for, in thousandths
   --rounds N          default 5
   --csv FILE          writes the points
   --pictures          writes PNG and EXR of every renderer at the finest step to build/pictures

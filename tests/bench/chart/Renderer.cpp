@@ -14,8 +14,14 @@ RendererPtr makeRenderer(const std::string& name)
     const std::size_t colon = std::min(name.find(':'), name.size());
     const std::string kind = name.substr(0, colon);
     const std::string detail = colon < name.size() ? name.substr(colon + 1) : "";
-    if (kind == "slabs" || kind == "slices")
-        return makeLibraryRenderer(kind == "slabs", detail.empty() ? 0 : std::stoi(detail));
+    if (kind == "slabs" || kind == "slices" || kind == "apart" || kind == "tolerance") {
+        LibraryOptions options;
+        options.slabs = kind != "slices";
+        options.joined = kind != "apart";
+        options.tolerance = kind == "tolerance";
+        options.brickSize = detail.empty() ? 0 : std::stoi(detail);
+        return makeLibraryRenderer(options);
+    }
     if (kind == "bare") return makeBareRenderer();
     if (kind == "bareintegral") return makeBareRenderer(true);
     if (kind == "fixed") return makeOsgVolumeRenderer(OsgVolumeTechnique::FIXED_FUNCTION);

@@ -31,9 +31,17 @@ public:
 
 using RendererPtr = std::unique_ptr<Renderer>;
 
-/// Bricks of at most `brickSize` samples per axis; 0: the library's default, which is one brick
-/// for all scenes here.
-RendererPtr makeLibraryRenderer(bool slabs, int brickSize = 0);
+struct LibraryOptions
+{
+    bool slabs = true; ///< else slices
+    /// Largest brick, samples per axis; 0: the library's default, which is one brick for all scenes
+    /// here.
+    int brickSize = 0;
+    bool joined = true; ///< bricks may share a texture
+    /// What setStep() sets is not a step but the error asked for, in thousandths.
+    bool tolerance = false;
+};
+RendererPtr makeLibraryRenderer(const LibraryOptions& options);
 /// A fragment shader that marches through the box in one pass, without a scene graph: the
 /// practical limit. With the colour at the middle of each step, or (better for tables with sharp
 /// features) the mean of the table over the values that a step passes.
