@@ -191,12 +191,17 @@ osg::BoundingBox VolumeGeometry::computeBoundingBox() const
 
 osg::BoundingSphere VolumeGeometry::computeBound() const
 {
-    const osg::BoundingBox box = computeBoundingBox();
-    if (!box.valid()) return {};
-    const osg::Vec3 center = box.center();
+    // Where its sphere is asked for before its box, osg::Drawable takes the box for known, too; it
+    // would stay empty, and never be culled.
+    _boundingBox = _initialBoundingBox;
+    _boundingBox.expandBy(_computeBoundingBoxCallback
+                              ? _computeBoundingBoxCallback->computeBound(*this)
+                              : computeBoundingBox());
+    if (!_boundingBox.valid()) return {};
+    const osg::Vec3 center = _boundingBox.center();
     // The centre is rounded to float as well: make room for it.
     const float slack = 2.0f * std::numeric_limits<float>::epsilon() * center.length();
-    return {center, box.radius() * (1.0f + 1e-6f) + slack};
+    return {center, _boundingBox.radius() * (1.0f + 1e-6f) + slack};
 }
 
 void VolumeGeometry::drawImplementation(osg::RenderInfo&) const {}

@@ -88,6 +88,18 @@ TEST(VolumeGeometry, BoundsHoldEveryVertexWhereverItIs)
     EXPECT_FALSE(osg::ref_ptr<VolumeGeometry>(new VolumeGeometry)->getBound().valid());
 }
 
+TEST(VolumeGeometry, ItsBoxIsKnownWhicheverBoundIsAskedForFirst)
+{
+    const osg::BoundingBoxd box(1, 2, 3, 4, 6, 8);
+    const osg::ref_ptr<VolumeGeometry> geometry = VolumeGeometry::createBox(box);
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_TRUE(geometry->isCullingActive()); // asks for the sphere
+        EXPECT_EQ(geometry->getBoundingBox()._min, osg::Vec3(1, 2, 3));
+        EXPECT_EQ(geometry->getBoundingBox()._max, osg::Vec3(4, 6, 8));
+        geometry->dirtyBound();
+    }
+}
+
 TEST(VolumeGeometry, AVisitorSeesItLikeAnyDrawable)
 {
     osg::ref_ptr<osg::MatrixTransform> transform =

@@ -21,8 +21,9 @@ const char* const usage = R"(Usage: osgVolumizerChart [options]
   --renderers A,B,..  of slabs slices slabs:BRICK slices:BRICK apart:BRICK (bricks with a texture
                       each) tolerance bare bareintegral fixed raytraced multipass vtkgpu vtkcpu;
                       default all that were built, bricks and tolerance aside
-  --steps A,B,..      sample distances in voxels, default 8,4,2,1,0.5,0.25; for `tolerance`: the
-                      errors asked for, in thousandths
+  --steps A,B,..      sample distances in voxels, default 8,4,2,1,0.5,0.25,0.125; for
+                      `tolerance`: the errors asked for, in thousandths. A renderer whose frames
+                      take more than half a second is not measured at finer ones
   --rounds N          default 5
   --csv FILE          writes the points
   --pictures          writes PNG and EXR of every renderer at the finest step to build/pictures

@@ -40,6 +40,9 @@ support::Difference compareOverBlack(support::FloatImage a, support::FloatImage 
     return d;
 }
 
+// A renderer whose frames take longer than this is not measured at finer steps.
+constexpr double PATIENCE_MILLISECONDS = 500.0;
+
 // What only the first frame after a change costs is not counted.
 void drawAt(Renderer& renderer, double step)
 {
@@ -100,12 +103,16 @@ std::vector<Point> measure(const ChartScene& scene, const Reference& reference,
 {
     const std::vector<Entry> entries = openAll(scene, reference, renderers);
     std::vector<Point> points(options.steps.size() * entries.size());
+    // Per renderer: how many steps are measured, which the first round decides.
+    std::vector<std::size_t> measured(entries.size(), options.steps.size());
     for (int round = 0; round < options.rounds; ++round) {
-        std::size_t i = 0;
-        for (double step : options.steps)
-            for (const Entry& entry : entries) {
+        for (std::size_t s = 0; s < options.steps.size(); ++s)
+            for (std::size_t e = 0; e < entries.size(); ++e) {
+                if (s >= measured[e]) continue;
+                const Entry& entry = entries[e];
+                const double step = options.steps[s];
                 Renderer& renderer = *entry.renderer;
-                Point& point = points[i++];
+                Point& point = points[s * entries.size() + e];
                 drawAt(renderer, step);
                 if (round == 0) {
                     const support::FloatImage picture = renderer.picture();
@@ -119,8 +126,13 @@ std::vector<Point> measure(const ChartScene& scene, const Reference& reference,
                 const double cpu = cpuMilliseconds();
                 point.milliseconds.push_back(timeFrame(renderer));
                 point.cpuMilliseconds.push_back(cpuMilliseconds() - cpu);
+                if (round == 0 && point.milliseconds.front() > PATIENCE_MILLISECONDS)
+                    measured[e] = s + 1;
             }
     }
+    points.erase(std::remove_if(points.begin(), points.end(),
+                                [](const Point& p) { return p.milliseconds.empty(); }),
+                 points.end());
     return points;
 }
 

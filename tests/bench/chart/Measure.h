@@ -18,7 +18,7 @@ struct Point
 
 struct MeasureOptions
 {
-    std::vector<double> steps{8.0, 4.0, 2.0, 1.0, 0.5, 0.25};
+    std::vector<double> steps{8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125};
     int rounds = 5;
     bool pictures = false; ///< write what each renderer draws at its finest step, for people
 };
