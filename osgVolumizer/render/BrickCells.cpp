@@ -125,7 +125,9 @@ void setOccupied(const core::CellGrid& grid, const std::vector<std::uint8_t>& oc
     countCells(grid, occupied, cells);
     cells.origin = glm::vec3(grid.originVoxel);
     cells.cellSize = static_cast<float>(grid.cellSize);
-    cells.spannedVolume = spannedCells(grid, occupied) * std::pow(double(grid.cellSize), 3.0);
+    const glm::dvec3 box = cells.box.size();
+    cells.marchedVolume = std::min(
+        spannedCells(grid, occupied) * std::pow(double(grid.cellSize), 3.0), box.x * box.y * box.z);
     cells.texture = makeTexture(grid.count, occupied);
 }
 
@@ -145,6 +147,7 @@ std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, std::int64_
     const auto range = std::minmax_element(grid.low.begin(), grid.low.end());
     const float highest = *std::max_element(grid.high.begin(), grid.high.end());
     result->homogeneous = voxels.getComponents() == 1 && *range.first == highest;
+    if (result->homogeneous) result->marchedVolume = 0.0;
     return result;
 }
 
@@ -189,6 +192,7 @@ joinedCells(const Voxels& voxels,
         markOccupied(cells, voxels.getLayout().brick(part.first).clipBox, grid, occupied);
         result->box.expand(cells.box.min);
         result->box.expand(cells.box.max);
+        result->apartMarchedVolume += cells.marchedVolume;
     }
     setOccupied(grid, occupied, *result);
     return result;

@@ -32,9 +32,11 @@ struct BrickCells
     float cellSize = 1.0f;
     /// In the box: all cells, and those that show something.
     std::int64_t cellCount = 0, occupiedCount = 0;
-    /// What is marched through where empty cells are leapt over from both ends of a ray, voxels:
-    /// mean over rays along the axes.
-    double spannedVolume = 0.0;
+    /// What is marched through where empty cells are leapt over from both ends of a ray, cubic
+    /// voxels: mean over rays along the axes. Nothing in homogeneous bricks.
+    double marchedVolume = 0.0;
+    /// Of cells that are joined: the same of each part by itself, summed.
+    double apartMarchedVolume = 0.0;
 };
 
 /// What decides which values are shown.

@@ -16,14 +16,10 @@ std::atomic<bool> joins{true};
 // memory; one for all does not.
 constexpr double MAXIMUM_BYTES = 1024.0 * 1024.0 * 1024.0;
 
-// What drawing a volume in many bricks costs, compared with one. Measured on llvmpipe with 64.
-constexpr double BRICKS_COST = 1.4;
-
-double volumeOf(const core::Box3d& box)
-{
-    const glm::dvec3 size = box.size();
-    return size.x * size.y * size.z;
-}
+// What drawing a volume in many bricks costs, compared with one: measured on llvmpipe with 64.
+// Twice that before those are taken apart that have been joined, so that views do not go back and
+// forth.
+constexpr double BRICKS_COST = 1.4, RELUCTANCE = 2.0;
 
 core::Box3d unionOf(const std::vector<SelectedBrick>& bricks)
 {
@@ -47,7 +43,8 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, osgUtil::Cu
 {
     const ProgramFeatures& features = volume.look->features;
     const core::BrickLayout& layout = voxels.getLayout();
-    if (!joins || volume.bricks.size() < 2 || !features.slab || !volume.prepared->voxelFrame ||
+    if (!joins || layout.brickCount() < 2 || volume.bricks.empty() || !features.slab ||
+        !volume.prepared->voxelFrame ||
         volume.appearance->getCombineRule() == VolumeAppearance::PAINT)
         return false;
     // Filters must find in a brick all that they need, since its neighbours may not be there.
@@ -58,20 +55,14 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, osgUtil::Cu
            double(textureBytes(voxels, volume.bricks.front())) <= MAXIMUM_BYTES;
 }
 
-// What a brick's rays march through, in voxels.
-double marchedVolume(const SelectedBrick& brick)
+// By all bricks that were ever needed, so that it does not depend on the view. Where nothing is
+// left out, joining always pays.
+bool isWorthJoining(const VolumeInstance& volume, const SelectedBrick& joined, bool isJoined)
 {
-    const double all = volumeOf(brick.box);
-    if (!brick.cells) return all;
-    return brick.cells->homogeneous ? 0.0 : std::min(all, brick.cells->spannedVolume);
-}
-
-bool isWorthJoining(const VolumeInstance& volume, const SelectedBrick& joined)
-{
-    double marched = 0.0;
-    for (const SelectedBrick& brick : volume.bricks)
-        marched += marchedVolume(brick);
-    return marchedVolume(joined) <= BRICKS_COST * marched;
+    if (volume.bricks.size() == 1) return isJoined;
+    if (!joined.cells) return true;
+    const double cost = (isJoined ? RELUCTANCE : 1.0) * BRICKS_COST;
+    return joined.cells->marchedVolume <= cost * joined.cells->apartMarchedVolume;
 }
 
 JoinedPiece pieceOf(const Voxels& voxels, std::int64_t brick)
@@ -110,11 +101,10 @@ bool addLeftOut(const VolumeInstance& volume, const Voxels& voxels, BrickTexture
     };
     for (const std::int64_t brick : leftOut.empty) {
         if (!isPassed(brick)) continue;
-        const auto range = voxels.getBrickRange(brick);
-        if (!(range.first <= range.second)) return false; // no value to stand for it
         JoinedPiece piece = pieceOf(voxels, brick);
         piece.empty = true;
-        piece.texels = textures.texel(voxels, range.first, gradients);
+        piece.texels = textures.texel(voxels, brick, gradients);
+        if (!piece.texels) return false;
         pieces.push_back(std::move(piece));
     }
     for (const std::int64_t brick : leftOut.cutAway) {
@@ -153,7 +143,7 @@ void joinBricks(VolumeInstance& volume, const Voxels& voxels, const OccupancyQue
     SelectedBrick all;
     all.box = unionOf(volume.bricks);
     all.cells = joinCells(volume, voxels, *textures, query);
-    if (!isWorthJoining(volume, all)) return;
+    if (!isWorthJoining(volume, all, textures->isJoined(voxels, gradients))) return;
     auto joined = std::make_shared<JoinedBricks>();
     if (!addLeftOut(volume, voxels, *textures, leftOut, all.box, joined->pieces)) return;
     for (const SelectedBrick& brick : volume.bricks)

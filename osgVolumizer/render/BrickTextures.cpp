@@ -251,15 +251,31 @@ osg::ref_ptr<JoinedTexture> BrickTextures::joined(const Voxels& voxels, const os
     return entry.texture;
 }
 
-osg::ref_ptr<const osg::Image> BrickTextures::texel(const Voxels& voxels, double value,
+bool BrickTextures::isJoined(const Voxels& voxels, bool gradients) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    const auto found = _joined.find(gradients);
+    return found != _joined.end() && found->second.layoutCount == voxels.getLayoutCount();
+}
+
+osg::ref_ptr<const osg::Image> BrickTextures::texel(const Voxels& voxels, std::int64_t brick,
                                                     bool gradients)
 {
-    const std::vector<double> values(static_cast<std::size_t>(voxels.getComponents()), value);
+    const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
+    std::lock_guard<std::mutex> lock(_mutex);
+    TexelEntry& entry = _texels[{brick, gradients}];
+    if (entry.image && entry.modifiedCount == modified && entry.layoutCount == layout)
+        return entry.image;
+    const auto range = voxels.getBrickRange(brick);
+    if (!(range.first <= range.second)) return nullptr;
+    const std::vector<double> values(static_cast<std::size_t>(voxels.getComponents()), range.first);
     auto texel = std::make_shared<std::vector<unsigned char>>(values.size() *
                                                               voxelTypeSize(voxels.getType()));
     core::convertVoxels(values.data(), VoxelType::FLOAT64, texel->data(), voxels.getType(),
                         values.size());
-    return makeImage(voxels, {texel, texel->data(), texel->size()}, glm::ivec3(1), gradients);
+    entry = {makeImage(voxels, {texel, texel->data(), texel->size()}, glm::ivec3(1), gradients),
+             modified, layout};
+    return entry.image;
 }
 
 void BrickTextures::resizeGLObjectBuffers(unsigned int maximum)

@@ -41,8 +41,11 @@ public:
     /// The texture for all bricks, made like one brick's image on the first call.
     osg::ref_ptr<JoinedTexture> joined(const Voxels& voxels, const osg::Image& like,
                                        bool gradients);
-    /// One texel as bricks have them where all their samples have a value.
-    osg::ref_ptr<const osg::Image> texel(const Voxels& voxels, double value, bool gradients);
+    /// Whether there is one already.
+    bool isJoined(const Voxels& voxels, bool gradients) const;
+    /// One texel that stands for all of a brick that shows nothing: its lowest value. Null where it
+    /// has none.
+    osg::ref_ptr<const osg::Image> texel(const Voxels& voxels, std::int64_t brick, bool gradients);
 
     CellCache& cells() { return _cells; }
 
@@ -59,6 +62,12 @@ private:
     CellCache _cells;
     mutable std::mutex _mutex;
     std::map<std::pair<std::int64_t, bool>, Entry> _entries; ///< with and without gradients
+    struct TexelEntry
+    {
+        osg::ref_ptr<const osg::Image> image;
+        unsigned modifiedCount = 0, layoutCount = 0;
+    };
+    std::map<std::pair<std::int64_t, bool>, TexelEntry> _texels; ///< likewise
     struct JoinedEntry
     {
         osg::ref_ptr<JoinedTexture> texture;

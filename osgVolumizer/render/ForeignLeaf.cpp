@@ -3,6 +3,7 @@
 #include <osg/BlendFunc>
 #include <osg/ColorMask>
 #include <osg/Drawable>
+#include <osgText/TextBase>
 #include <osgUtil/StateGraph>
 
 #include <glm/common.hpp>
@@ -90,6 +91,12 @@ bool writesDepth(const osgUtil::StateGraph* graph)
 {
     const osg::Depth* depth = effectiveDepth(graph);
     return isDepthTested(graph) && (!depth || depth->getWriteMask());
+}
+
+bool keepsState(const osg::Drawable& drawable)
+{
+    return (drawable.asGeometry() || dynamic_cast<const osgText::TextBase*>(&drawable)) &&
+           !drawable.getDrawCallback();
 }
 
 Blending blendingOf(const osgUtil::StateGraph* graph)

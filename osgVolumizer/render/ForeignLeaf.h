@@ -38,6 +38,10 @@ BoxInView boxInView(const osg::BoundingBoxd& box, const osg::Matrixd& modelView,
 /// Whether what is drawn in a graph may change the depth buffer.
 bool writesDepth(const osgUtil::StateGraph* graph);
 
+/// Whether a drawable is known to draw with the state of its graph; others may set GL state
+/// themselves, as particle systems do.
+bool keepsState(const osg::Drawable& drawable);
+
 /// How fragments of a graph are blended.
 struct Blending
 {

@@ -4,7 +4,6 @@
 #include "Matrices.h"
 #include "ScreenAreas.h"
 
-#include <osgText/TextBase>
 #include <osgUtil/StateGraph>
 
 #include <algorithm>
@@ -199,9 +198,7 @@ void GroupComposer::compose(std::vector<OrderedLeaf>& leaves)
 // Other drawables may set the depth mask themselves, as particle systems do.
 bool GroupComposer::leavesDepth(const Surface& surface)
 {
-    const osg::Drawable* drawable = surface.leaf->leaf().getDrawable();
-    return (drawable->asGeometry() || dynamic_cast<const osgText::TextBase*>(drawable)) &&
-           !drawable->getDrawCallback();
+    return keepsState(*surface.leaf->leaf().getDrawable());
 }
 
 namespace {

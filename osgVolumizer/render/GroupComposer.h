@@ -40,15 +40,16 @@ struct MergeGroup
 /// Makes the leaves of one group, far to near.
 ///
 /// A volume by itself is one leaf. Where surfaces with usual blending are in one volume of one
-/// brick, their fragments are captured and composited while the volume is marched: see CaptureLeaf;
-/// exact, and the fastest. Where a few others are in volumes, their fragments are sorted: see
-/// LayerLeaf; that is exact too. Where there are many triangles, depth is cut into intervals. An
-/// interval of a volume and surfaces is drawn as: the surfaces' nearest depth into a layer buffer,
-/// the volume behind that depth, the surfaces, the volume in front of it; this is exact where a
-/// pixel has one surface in the interval, and off by the interval's thickness where it has more.
-/// Several volumes are drawn in slabs one step thick, alternating who goes first: the error of
-/// drawing one slab of A behind one of B, ½ tauA tauB h² (cA - cB), has the other sign in the next
-/// slab, so it cancels, and what remains is second order in h and independent of who is A.
+/// brick, or of several in one texture, their fragments are captured and composited while the
+/// volume is marched: see CaptureLeaf; exact, and the fastest. Where a few others are in volumes,
+/// their fragments are sorted: see LayerLeaf; that is exact too. Where there are many triangles,
+/// depth is cut into intervals. An interval of a volume and surfaces is drawn as: the surfaces'
+/// nearest depth into a layer buffer, the volume behind that depth, the surfaces, the volume in
+/// front of it; this is exact where a pixel has one surface in the interval, and off by the
+/// interval's thickness where it has more. Several volumes are drawn in slabs one step thick,
+/// alternating who goes first: the error of drawing one slab of A behind one of B, ½ tauA tauB h²
+/// (cA - cB), has the other sign in the next slab, so it cancels, and what remains is second order
+/// in h and independent of who is A.
 ///
 /// Only pixels that surfaces can touch pay for them: the viewport is cut into rectangles around
 /// surfaces that overlap each other on the screen, each with intervals of its own, and the rest.

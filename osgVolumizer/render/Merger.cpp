@@ -131,17 +131,20 @@ bool isDepthWritten(const std::vector<osgUtil::RenderLeaf*>& leaves,
     });
 }
 
+bool mayWriteDepth(const osgUtil::RenderLeaf* leaf)
+{
+    return writesDepth(leaf->_parent) || !keepsState(*leaf->getDrawable());
+}
+
 bool anyWritesDepth(const osgUtil::RenderBin& bin)
 {
     auto& b = const_cast<osgUtil::RenderBin&>(bin);
     const auto& leaves = b.getRenderLeafList();
     const auto& graphs = b.getStateGraphList();
-    return b.getDrawCallback() ||
-           std::any_of(
-               leaves.begin(), leaves.end(),
-               [](const osgUtil::RenderLeaf* leaf) { return writesDepth(leaf->_parent); }) ||
+    return b.getDrawCallback() || std::any_of(leaves.begin(), leaves.end(), mayWriteDepth) ||
            std::any_of(graphs.begin(), graphs.end(), [](const osgUtil::StateGraph* graph) {
-               return !graph->_leaves.empty() && writesDepth(graph);
+               return std::any_of(graph->_leaves.begin(), graph->_leaves.end(),
+                                  [](const auto& leaf) { return mayWriteDepth(leaf.get()); });
            });
 }
 
@@ -280,7 +283,7 @@ void Merger::leaveOut(const osgUtil::RenderBin& bin, const LeafList& leaves,
     for (const osgUtil::RenderLeaf* leaf : leaves) {
         if (dynamic_cast<const VolumeDrawable*>(leaf->getDrawable())) continue;
         alone = alone && !(leaf->_depth >= nearest && leaf->_depth <= farthest);
-        cleared = cleared && (leaf->_depth < nearest || !writesDepth(leaf->_parent));
+        cleared = cleared && (leaf->_depth < nearest || !mayWriteDepth(leaf));
     }
     if (alone && cleared) accumulation.expectClearedDepth();
     if (!alone || !_oneViewport) return;

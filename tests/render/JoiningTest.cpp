@@ -119,6 +119,13 @@ TEST_F(Joining, SixtyFourBricksAreOneDrawCall)
     renderer.render();
     EXPECT_EQ(counter(renderer, "bricks uploaded"), 0);
     EXPECT_EQ(counter(renderer, "bytes uploaded"), 0);
+    // A close view of one brick finds it there.
+    renderer.options().perspective(2.0).lookAt({60, -36, 50}, {29, 3, 29}, {0, 0, 1});
+    renderer.render();
+    EXPECT_LT(counter(renderer, "bricks drawn"), 32);
+    EXPECT_EQ(counter(renderer, "draw calls"), 1);
+    EXPECT_EQ(counter(renderer, "bricks uploaded"), 0);
+    renderer.options() = view();
     EXPECT_LE(compare(image, separately(volume, view())).maximum, 1e-4);
     const JoiningScope scope(false);
     renderer.render();

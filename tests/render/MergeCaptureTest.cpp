@@ -37,7 +37,7 @@ protected:
     MergeCapture()
     {
         _options.size(96, 96).perspective(40.0).lookAt({70, -50, 60}, {16, 16, 16}, {0, 0, 1});
-        _scene.addVolume(makeVoxels(glm::ivec3(SIZE), bumps), THIN);
+        _scene.addVolume(_voxels, THIN);
     }
     // Exact but for the volume's own sampling, which in thin volumes is far below the bounds.
     void expectExact(const std::string& name)
@@ -53,6 +53,7 @@ protected:
         EXPECT_LE(j.away.maximum, 1e-3);
     }
 
+    osg::ref_ptr<Voxels> _voxels = makeVoxels(glm::ivec3(SIZE), bumps);
     MixedScene _scene;
     RenderOptions _options;
 };
@@ -76,6 +77,14 @@ TEST_F(MergeCapture, NestedShellsInOneMesh)
     ASSERT_GT(mesh.triangles.size(), 10000u);
     _scene.addMesh(mesh, {0.2, 0.9, 0.3, 0.3});
     expectExact("shells");
+}
+
+TEST_F(MergeCapture, BricksThatShareATexture)
+{
+    ASSERT_TRUE(_voxels->setBrickSize(glm::ivec3(9)));
+    for (const double radius : {13.0, 6.0})
+        _scene.addMesh(sphereMesh(MIDDLE, radius, 64, 32), {0.2, 0.9, 0.3, 0.3});
+    expectExact("bricks");
 }
 
 TEST_F(MergeCapture, LargeAndSmallMeshes)
