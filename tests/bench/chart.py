@@ -91,7 +91,7 @@ def markdown(scenes, clock):
                 if time is None:
                     cells.append(f"- ({min(p[1] for p in curves[name]):.1e})")
                     continue
-                text = f"{'<' if time < 0 else ''}{abs(time):.0f}"
+                text = f"{'<' if time < 0 else ''}{abs(time):.{0 if abs(time) >= 10 else 1}f}"
                 times = ratio(curves[name], curves[LIBRARY], target) if LIBRARY in curves else None
                 cells.append(text + (f" ({times:.2f}x)" if times and name != LIBRARY else ""))
             lines.append(f"| {scene} | " + " | ".join(cells) + " |")
@@ -170,10 +170,11 @@ def svg(scenes, clock):
            text(width / 2, 18, f"Root mean square error (up) against {clock} milliseconds a frame (across); "
                 "one point a sample distance", extra='font-size="14"')]
     names = [n for n in COLORS if any(n in curves for _, curves in scenes.values())]
-    for i, name in enumerate(names):
-        x = MARGIN + i * (width - 2 * MARGIN) / len(names)
+    x = MARGIN
+    for name in names:
         out.append(f'<path d="M{x:.1f} 34h14" stroke="{COLORS[name]}" stroke-width="3"/>')
         out.append(text(x + 18, 38, name, "start", 'font-size="10"'))
+        x += 36 + 5.5 * len(name)
     for i, (scene, (description, curves)) in enumerate(scenes.items()):
         left = MARGIN * 1.4 + (i % COLUMNS) * (PANEL_WIDTH + 1.7 * MARGIN)
         top = 1.6 * MARGIN + (i // COLUMNS) * (PANEL_HEIGHT + 1.6 * MARGIN)

@@ -3,7 +3,7 @@
 # without VTK the chart is drawn without it), builds, measures everything in one process, round by
 # round, and writes build/chart/chart.csv, chart.svg and chart.md. Arguments go to the program, e.g.
 #   tests/bench/chart.sh --scenes smooth,head --rounds 3
-# A full run takes about half an hour on two cores. The CPUs should have nothing else to do.
+# A full run takes about a quarter of an hour on two cores. The CPUs should have nothing else to do.
 set -u -o pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
 . .ci/packages.sh
