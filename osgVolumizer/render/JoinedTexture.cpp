@@ -28,6 +28,25 @@ std::vector<unsigned char> repeated(const osg::Image& image, const glm::ivec3& s
     return texels;
 }
 
+// Texels that no brick has written yet are next to others, and a filter may read them with a weight
+// of nothing: they must be numbers.
+void clear(osg::State& state, const osg::Texture3D& texture)
+{
+    const int w = texture.getTextureWidth(), h = texture.getTextureHeight(),
+              depth = texture.getTextureDepth();
+    const std::size_t layer =
+        std::size_t(w) * h *
+        osg::Image::computePixelSizeInBits(texture.getSourceFormat(), texture.getSourceType()) / 8;
+    constexpr std::size_t CHUNK = 16 << 20;
+    const int layers = std::clamp(static_cast<int>(CHUNK / layer), 1, depth);
+    const std::vector<unsigned char> zeros(layer * std::size_t(layers));
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    for (int z = 0; z < depth; z += layers)
+        state.get<osg::GLExtensions>()->glTexSubImage3D(
+            GL_TEXTURE_3D, 0, 0, 0, z, w, h, std::min(layers, depth - z), texture.getSourceFormat(),
+            texture.getSourceType(), zeros.data());
+}
+
 } // namespace
 
 JoinedTexture::JoinedTexture(osg::Texture3D* texture, const glm::ivec3& size,
@@ -73,7 +92,8 @@ void JoinedTexture::apply(osg::RenderInfo& renderInfo, const ContextLimits& limi
     osg::State& state = *renderInfo.getState();
     std::lock_guard<std::mutex> lock(_mutex);
     Contents& contents = _contents[state.getContextID()];
-    if (!_texture->getTextureObject(state.getContextID())) {
+    const bool fresh = !_texture->getTextureObject(state.getContextID());
+    if (fresh) {
         contents.clear();
         suitFormat(*_texture, limits);
     }
@@ -90,6 +110,7 @@ void JoinedTexture::apply(osg::RenderInfo& renderInfo, const ContextLimits& limi
     state.unbindPixelBufferObject();
     _texture->apply(state);
     state.haveAppliedTextureAttribute(unit, _texture.get());
+    if (fresh) clear(state, *_texture);
     // Empty bricks first, since they share samples with others, which are then written again.
     for (const JoinedPiece& piece : pieces) {
         if (!piece.empty || !lacks(piece)) continue;

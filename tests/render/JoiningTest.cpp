@@ -175,6 +175,17 @@ TEST_F(Joining, ShowsTheSameInEveryWay)
     }
 }
 
+TEST_F(Joining, GradientsReachIntoTheNextBrick)
+{
+    // An overlap of one sample, which is too little for gradients of bricks by themselves.
+    osg::ref_ptr<VolumeAppearance> volume = makeBricks(bumps, smoothPoints(0.5), 1);
+    volume->setShading(true);
+    const FloatImage image = support::renderScene(volume, view());
+    EXPECT_GT(support::coveredPixels(image, 0.2f).count(), 1000u);
+    ASSERT_TRUE(volume->getVoxels()->setBrickSize(glm::ivec3(SIZE)));
+    EXPECT_LE(compare(image, support::renderScene(volume, view())).maximum, 1e-5);
+}
+
 TEST_F(Joining, EmptyBricksAreNotReadAndStayEmpty)
 {
     osg::ref_ptr<VolumeAppearance> volume = makeBricks(halves, BAND);
