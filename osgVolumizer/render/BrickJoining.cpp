@@ -31,12 +31,12 @@ core::Box3d unionOf(const std::vector<SelectedBrick>& bricks)
     return box;
 }
 
-std::size_t textureBytes(const Voxels& voxels, const SelectedBrick& brick)
+double joinedBytes(const Voxels& voxels, const SelectedBrick& brick)
 {
     const glm::dvec3 all(voxels.getSize());
     const glm::dvec3 own(voxels.getLayout().brick(brick.index).samples.size());
     const glm::dvec3 ratio = all / own;
-    return static_cast<std::size_t>(double(brick.texture.bytes) * ratio.x * ratio.y * ratio.z);
+    return double(brick.texture.bytes) * ratio.x * ratio.y * ratio.z;
 }
 
 bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
@@ -52,7 +52,7 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, osgUtil::Cu
     const osg::State* state = visitor.getState();
     const glm::ivec3 size = voxels.getSize();
     return state && std::max({size.x, size.y, size.z}) <= texture3DSizeOf(state->getContextID()) &&
-           double(textureBytes(voxels, volume.bricks.front())) <= MAXIMUM_BYTES;
+           joinedBytes(voxels, volume.bricks.front()) <= MAXIMUM_BYTES;
 }
 
 // By all bricks that were ever needed, so that it does not depend on the view. Where nothing is
@@ -152,7 +152,7 @@ void joinBricks(VolumeInstance& volume, const Voxels& voxels, const OccupancyQue
     joined->texture = textures->joined(voxels, *first.texture.texture->getImage(), gradients);
     const glm::vec3 size(voxels.getSize());
     all.clipBox = voxels.getLayout().extent();
-    all.texture = {joined->texture->texture(), textureBytes(voxels, first)};
+    all.texture.texture = joined->texture->texture();
     all.textureScale = 1.0f / size;
     all.textureOffset = 0.5f / size;
     all.brickCount = static_cast<int>(volume.bricks.size());

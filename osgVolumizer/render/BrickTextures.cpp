@@ -304,17 +304,20 @@ void BrickTextures::releaseGLObjects(osg::State* state) const
         entry.second.texture->texture()->releaseGLObjects(state);
 }
 
+void countUploaded(osg::RenderInfo& renderInfo, double bricks, double bytes)
+{
+    const osg::FrameStamp* stamp = renderInfo.getState()->getFrameStamp();
+    count(renderInfo.getCurrentCamera(), stamp, "osgVolumizer bricks uploaded", bricks);
+    count(renderInfo.getCurrentCamera(), stamp, "osgVolumizer bytes uploaded", bytes);
+}
+
 CoarseTexture applyBrick(osg::RenderInfo& renderInfo, const ContextLimits& limits,
                          const BrickTexture& brick, unsigned unit)
 {
     osg::State& state = *renderInfo.getState();
     const CoarseTexture fitting = fittingTexture(*brick.texture, limits.texture3DSize);
     if (!fitting.texture->getTextureObject(state.getContextID())) {
-        const auto add = [&](const char* name, double amount) {
-            count(renderInfo.getCurrentCamera(), state.getFrameStamp(), name, amount);
-        };
-        add("osgVolumizer bricks uploaded", 1.0);
-        add("osgVolumizer bytes uploaded", static_cast<double>(brick.bytes));
+        countUploaded(renderInfo, 1.0, static_cast<double>(brick.bytes));
         suitFormat(*fitting.texture, limits);
     }
     state.applyTextureAttribute(unit, fitting.texture.get());

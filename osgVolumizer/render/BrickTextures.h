@@ -81,6 +81,9 @@ private:
 CoarseTexture applyBrick(osg::RenderInfo& renderInfo, const ContextLimits& limits,
                          const BrickTexture& brick, unsigned unit);
 
+/// Counts bricks whose texels went to GL in this frame.
+void countUploaded(osg::RenderInfo& renderInfo, double bricks, double bytes);
+
 /// Gives a texture, before it is made in a context, the format whose filter suits that. What is
 /// read stays the same.
 void suitFormat(osg::Texture3D& texture, const ContextLimits& limits);

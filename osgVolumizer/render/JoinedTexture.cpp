@@ -1,7 +1,6 @@
 #include "JoinedTexture.h"
 
 #include "BrickTextures.h"
-#include "Statistics.h"
 
 #include <osg/GLExtensions>
 
@@ -129,11 +128,7 @@ void JoinedTexture::apply(osg::RenderInfo& renderInfo, const ContextLimits& limi
         bytes += double(texelBytes(*piece.texels)) * piece.texels->s() * piece.texels->t() *
                  piece.texels->r();
     }
-    if (bricks == 0.0) return;
-    count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer bricks uploaded",
-          bricks);
-    count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer bytes uploaded",
-          bytes);
+    if (bricks > 0.0) countUploaded(renderInfo, bricks, bytes);
 }
 
 } // namespace render

@@ -79,16 +79,23 @@ bool isNearer(const OrderedLeaf& a, const OrderedLeaf& b)
     return a.depth < b.depth;
 }
 
-// The first and the last of our leaves, around all others.
-void addAccumulation(Accumulation& accumulation, const osgUtil::RenderLeaf& beside,
-                     const glm::ivec4& viewport, std::vector<OrderedLeaf>& made)
+// The depths between which our leaves, one at least, are drawn.
+core::DepthInterval endsOf(const std::vector<OrderedLeaf>& made)
 {
     const auto ends = std::minmax_element(made.begin(), made.end(), isNearer);
-    const double nearest = ends.first->depth, farthest = ends.second->depth;
-    made.insert(made.begin(), {farthest, accumulationLeaf(accumulation, AccumulationLeaf::BEGIN,
-                                                          beside, viewport)});
+    return {ends.first->depth, ends.second->depth};
+}
+
+// The first and the last of our leaves, around all others.
+void addAccumulation(Accumulation& accumulation, const osgUtil::RenderLeaf& beside,
+                     const glm::ivec4& viewport, const core::DepthInterval& ends,
+                     std::vector<OrderedLeaf>& made)
+{
+    made.insert(
+        made.begin(),
+        {ends.farDepth, accumulationLeaf(accumulation, AccumulationLeaf::BEGIN, beside, viewport)});
     made.push_back(
-        {nearest, accumulationLeaf(accumulation, AccumulationLeaf::END, beside, viewport)});
+        {ends.nearDepth, accumulationLeaf(accumulation, AccumulationLeaf::END, beside, viewport)});
 }
 
 // Tells lit volumes of the stage's lights.
@@ -120,13 +127,11 @@ void collectBins(osgUtil::RenderBin& bin, std::vector<osgUtil::RenderBin*>& bins
 // Whether leaves that are not ours may leave something in the depth buffer while ours are drawn.
 bool isDepthWritten(const std::vector<osgUtil::RenderLeaf*>& leaves,
                     const std::unordered_set<const osgUtil::RenderLeaf*>& replaced,
-                    const std::vector<OrderedLeaf>& made)
+                    const core::DepthInterval& ends)
 {
-    const auto ends = std::minmax_element(made.begin(), made.end(), isNearer);
     return std::any_of(leaves.begin(), leaves.end(), [&](const osgUtil::RenderLeaf* leaf) {
         if (dynamic_cast<const VolumeDrawable*>(leaf->getDrawable())) return false;
-        const bool between =
-            leaf->_depth >= ends.first->depth && leaf->_depth <= ends.second->depth;
+        const bool between = leaf->_depth >= ends.nearDepth && leaf->_depth <= ends.farDepth;
         return (between || replaced.count(leaf)) && writesDepth(leaf->_parent);
     });
 }
@@ -256,9 +261,10 @@ void Merger::merge(const osgUtil::RenderBin& bin, LeafList& leaves,
         for (const SelectedBrick& brick : volume->bricks)
             counts.bricksDrawn += brick.brickCount;
     if (!made.empty()) {
-        if (isDepthWritten(leaves, replaced, made)) accumulation->keepDepth();
-        if (groups.surfaces.empty()) leaveOut(bin, leaves, visible, made, *accumulation);
-        addAccumulation(*accumulation, *visible.front()->leaf, viewport(), made);
+        const core::DepthInterval ends = endsOf(made);
+        if (isDepthWritten(leaves, replaced, ends)) accumulation->keepDepth();
+        if (groups.surfaces.empty()) leaveOut(bin, leaves, visible, ends, *accumulation);
+        addAccumulation(*accumulation, *visible.front()->leaf, viewport(), ends, made);
     }
 
     std::vector<OrderedLeaf> all;
@@ -274,16 +280,14 @@ void Merger::merge(const osgUtil::RenderBin& bin, LeafList& leaves,
 
 // What need not be copied where volumes are drawn by themselves.
 void Merger::leaveOut(const osgUtil::RenderBin& bin, const LeafList& leaves,
-                      const std::vector<VolumeInstance*>& visible,
-                      const std::vector<OrderedLeaf>& made, Accumulation& accumulation) const
+                      const std::vector<VolumeInstance*>& visible, const core::DepthInterval& ends,
+                      Accumulation& accumulation) const
 {
-    const auto ends = std::minmax_element(made.begin(), made.end(), isNearer);
-    const double nearest = ends.first->depth, farthest = ends.second->depth;
     bool alone = true, cleared = isDepthClearedBefore(bin);
     for (const osgUtil::RenderLeaf* leaf : leaves) {
         if (dynamic_cast<const VolumeDrawable*>(leaf->getDrawable())) continue;
-        alone = alone && !(leaf->_depth >= nearest && leaf->_depth <= farthest);
-        cleared = cleared && (leaf->_depth < nearest || !mayWriteDepth(leaf));
+        alone = alone && !(leaf->_depth >= ends.nearDepth && leaf->_depth <= ends.farDepth);
+        cleared = cleared && (leaf->_depth < ends.nearDepth || !mayWriteDepth(leaf));
     }
     if (alone && cleared) accumulation.expectClearedDepth();
     if (!alone || !_oneViewport) return;

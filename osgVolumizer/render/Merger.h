@@ -42,7 +42,7 @@ private:
     void merge(const osgUtil::RenderBin& bin, LeafList& leaves,
                const std::vector<VolumeInstance*>& visible, FrameCounts& counts);
     void leaveOut(const osgUtil::RenderBin& bin, const LeafList& leaves,
-                  const std::vector<VolumeInstance*>& visible, const std::vector<OrderedLeaf>& made,
+                  const std::vector<VolumeInstance*>& visible, const core::DepthInterval& ends,
                   Accumulation& accumulation) const;
     osg::ref_ptr<Accumulation> makeAccumulation() const;
     void report(const FrameCounts& counts) const;

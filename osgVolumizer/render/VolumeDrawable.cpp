@@ -188,13 +188,13 @@ void drawBatch(osg::RenderInfo& renderInfo, const ContextLimits& limits, const U
                const ProgramFeatures& features, const BrickBatch& batch)
 {
     osg::State& state = *renderInfo.getState();
-    if (batch.joined) {
-        batch.joined->texture->apply(renderInfo, limits, batch.joined->pieces, UNIT_VOXELS);
-        uniforms.set("textureScale", batch.textureScale);
-        uniforms.set("textureOffset", batch.textureOffset);
-    } else if (batch.texture) {
-        const CoarseTexture voxels =
-            applyBrick(renderInfo, limits, {batch.texture, batch.textureBytes}, UNIT_VOXELS);
+    if (batch.texture) {
+        CoarseTexture voxels;
+        if (batch.joined)
+            batch.joined->texture->apply(renderInfo, limits, batch.joined->pieces, UNIT_VOXELS);
+        else
+            voxels =
+                applyBrick(renderInfo, limits, {batch.texture, batch.textureBytes}, UNIT_VOXELS);
         uniforms.set("textureScale", batch.textureScale * voxels.scale);
         uniforms.set("textureOffset", batch.textureOffset * voxels.scale + voxels.offset);
     }

@@ -2,11 +2,11 @@
 
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/VolumeGeometry.h>
-#include <osgVolumizer/render/BrickJoining.h>
 
 #include <oracles/Grid.h>
 #include <oracles/Scene.h>
 #include <support/Compare.h>
+#include <support/JoiningScope.h>
 #include <support/OracleView.h>
 
 #include <gtest/gtest.h>
@@ -23,6 +23,7 @@ inline std::string techniqueName(const ::testing::TestParamInfo<VolumeAppearance
     return info.param == VolumeAppearance::SLABS ? "Slabs" : "Slices";
 }
 
+using support::JoiningScope;
 using Points = std::vector<core::TransferFunction::Point>;
 
 /// Float voxels from a function of the voxel frame.
@@ -134,16 +135,6 @@ inline Points smoothPoints(double opacity)
 {
     return {{0.0, {0.1, 0.2, 0.9, 0.0}}, {1.0, {1.0, 0.5, 0.1, opacity}}};
 }
-
-/// Whether bricks may be joined in one texture, for as long as it lives.
-class JoiningScope
-{
-public:
-    explicit JoiningScope(bool on) { render::setJoining(on); }
-    ~JoiningScope() { render::setJoining(true); }
-    JoiningScope(const JoiningScope&) = delete;
-    JoiningScope& operator=(const JoiningScope&) = delete;
-};
 
 /// Something with detail in all directions and no symmetry, between 0 and 1.
 inline double bumps(const glm::dvec3& p)

@@ -32,17 +32,6 @@ struct Box3d
     bool operator==(const Box3d& o) const { return min == o.min && max == o.max; }
 };
 
-/// The overlap of two boxes; empty where they do not touch.
-inline Box3d intersection(const Box3d& a, const Box3d& b)
-{
-    Box3d r;
-    for (int i = 0; i < 3; ++i) {
-        r.min[i] = a.min[i] > b.min[i] ? a.min[i] : b.min[i];
-        r.max[i] = a.max[i] < b.max[i] ? a.max[i] : b.max[i];
-    }
-    return r;
-}
-
 /// Box of integers, half-open: [min, max) on each axis. Used for ranges of samples and of cells.
 struct Box3i
 {
@@ -54,15 +43,30 @@ struct Box3i
     bool operator==(const Box3i& o) const { return min == o.min && max == o.max; }
 };
 
-/// The overlap of two ranges; empty where they have nothing in common.
-inline Box3i intersection(const Box3i& a, const Box3i& b)
+namespace detail {
+
+template <class Box>
+Box intersection(const Box& a, const Box& b)
 {
-    Box3i r;
+    Box r;
     for (int i = 0; i < 3; ++i) {
         r.min[i] = a.min[i] > b.min[i] ? a.min[i] : b.min[i];
         r.max[i] = a.max[i] < b.max[i] ? a.max[i] : b.max[i];
     }
     return r;
+}
+
+} // namespace detail
+
+/// The overlap of two boxes; empty where they do not touch.
+inline Box3d intersection(const Box3d& a, const Box3d& b)
+{
+    return detail::intersection(a, b);
+}
+/// The overlap of two ranges; empty where they have nothing in common.
+inline Box3i intersection(const Box3i& a, const Box3i& b)
+{
+    return detail::intersection(a, b);
 }
 
 /// Half-space: the points p with dot(normal, p) + offset >= 0.

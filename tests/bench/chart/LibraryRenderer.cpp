@@ -2,7 +2,8 @@
 
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/VolumeGeometry.h>
-#include <osgVolumizer/render/BrickJoining.h>
+
+#include <support/JoiningScope.h>
 
 namespace osgVolumizer {
 namespace bench {
@@ -64,16 +65,13 @@ public:
     }
     void frame() override
     {
-        render::setJoining(_options.joined);
+        const support::JoiningScope scope(_options.joined);
         _renderer->viewer().frame();
-        render::setJoining(true);
     }
     support::FloatImage picture() override
     {
-        render::setJoining(_options.joined);
-        support::FloatImage image = _renderer->render();
-        render::setJoining(true);
-        return image;
+        const support::JoiningScope scope(_options.joined);
+        return _renderer->render();
     }
     std::map<std::string, double> split() override
     {

@@ -90,14 +90,6 @@ std::vector<Entry> openAll(const ChartScene& scene, const Reference& reference,
 
 } // namespace
 
-double median(std::vector<double> values)
-{
-    if (values.empty()) return 0.0;
-    const std::size_t middle = values.size() / 2;
-    std::sort(values.begin(), values.end());
-    return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
 std::vector<Point> measure(const ChartScene& scene, const Reference& reference,
                            const std::vector<RendererPtr>& renderers, const MeasureOptions& options)
 {

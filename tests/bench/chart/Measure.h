@@ -1,5 +1,6 @@
 #pragma once
 
+#include "../Median.h"
 #include "Reference.h"
 #include "Renderer.h"
 
@@ -32,8 +33,6 @@ std::vector<Point> measure(const ChartScene& scene, const Reference& reference,
 /// Draws frames of one renderer, with nothing between them: for a profiler that is told to count
 /// inside of this function only. Returns the wall clock milliseconds of each.
 std::vector<double> drawFrames(Renderer& renderer, int count);
-
-double median(std::vector<double> values);
 
 } // namespace bench
 } // namespace osgVolumizer

@@ -5,6 +5,7 @@
 //
 //   mergebench [frames] [name]
 
+#include "../Median.h"
 #include "MixedScene.h"
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
+using osgVolumizer::bench::median;
 
 namespace {
 
@@ -70,12 +72,6 @@ double processMilliseconds()
     timespec now;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-double median(std::vector<double> v)
-{
-    std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
-    return v[v.size() / 2];
 }
 
 void run(const Bench& bench, int frames)

@@ -6,6 +6,7 @@
 //
 // Frames of both are interleaved; times are medians of wall-clock and of the process's CPU time.
 
+#include "../Median.h"
 #include "MixedScene.h"
 
 #include <vtkActor.h>
@@ -226,17 +227,12 @@ struct Times
             std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
                 .count());
     }
-    static double median(std::vector<double> v)
-    {
-        std::nth_element(v.begin(), v.begin() + long(v.size() / 2), v.end());
-        return v[v.size() / 2];
-    }
 };
 
 void print(const char* name, double step, double rmse, const Times& times)
 {
     std::printf("%-14s step %5.3f voxels  rmse %.2e  wall %7.1f ms  CPU %7.1f ms\n", name, step,
-                rmse, Times::median(times.wall), Times::median(times.cpu));
+                rmse, bench::median(times.wall), bench::median(times.cpu));
     std::fflush(stdout);
 }
 

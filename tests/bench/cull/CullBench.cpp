@@ -4,9 +4,8 @@
 //
 //   cullbench [frames]
 
+#include "../Median.h"
 #include "Volumes.h"
-
-#include <support/SceneRenderer.h>
 
 #include <osg/MatrixTransform>
 #include <osg/Timer>
@@ -23,12 +22,6 @@ using namespace osgVolumizer::test;
 namespace {
 
 constexpr int COUNT = 1000;
-
-double median(std::vector<double> v)
-{
-    std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-}
 
 // Cull and sort, as osgViewer's renderer does both, microseconds.
 double cullMicroseconds(osg::Node& scene, int frames)
@@ -69,7 +62,7 @@ double cullMicroseconds(osg::Node& scene, int frames)
         graph->prune();
         times.push_back(osg::Timer::instance()->delta_u(start, osg::Timer::instance()->tick()));
     }
-    return median(times);
+    return bench::median(times);
 }
 
 // The volumes, each moved to one place.
