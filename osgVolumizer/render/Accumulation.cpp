@@ -3,12 +3,9 @@
 #include "ReportOnce.h"
 #include "ScissorScope.h"
 #include "ScreenPass.h"
-#include "SharedStateSets.h"
 #include "Statistics.h"
+#include "TargetBuffers.h"
 #include "VolumeProgram.h"
-
-#include <osg/Depth>
-#include <osgUtil/StateGraph>
 
 #include <algorithm>
 
@@ -17,43 +14,25 @@ namespace render {
 
 namespace {
 
-osg::ref_ptr<osg::Texture2D> makeTarget(int width, int height, GLenum internalFormat, GLenum format,
-                                        GLenum type)
+// Windows may begin left of or below the screen, or the framebuffer: nothing is drawn there.
+glm::ivec4 visiblePart(const glm::ivec4& r)
 {
-    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
-    texture->setTextureSize(width, height);
-    texture->setInternalFormat(static_cast<GLint>(internalFormat));
-    texture->setSourceFormat(format);
-    texture->setSourceType(type);
-    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
-    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
-    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
-    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
-    texture->setResizeNonPowerOfTwoHint(false);
-    texture->setDataVariance(osg::Object::STATIC);
-    return texture;
+    const int x = std::max(r[0], 0), y = std::max(r[1], 0);
+    return {x, y, std::max(r[0] + r[2] - x, 0), std::max(r[1] + r[3] - y, 0)};
 }
 
-osg::ref_ptr<osg::Texture2D> makeDepth(int width, int height, GLenum format)
+// Formats of the target, best first. Without float targets fixed point is the next best, which
+// holds all that a framebuffer shows.
+std::vector<GLenum> colorFormats(int bits, const ContextLimits& limits)
 {
-    if (format == GL_DEPTH32F_STENCIL8)
-        return makeTarget(width, height, format, GL_DEPTH_STENCIL_EXT,
-                          GL_FLOAT_32_UNSIGNED_INT_24_8_REV);
-    if (format == GL_DEPTH24_STENCIL8_EXT)
-        return makeTarget(width, height, format, GL_DEPTH_STENCIL_EXT, GL_UNSIGNED_INT_24_8_EXT);
-    return makeTarget(width, height, format, GL_DEPTH_COMPONENT,
-                      format == GL_DEPTH_COMPONENT32F ? GL_FLOAT : GL_UNSIGNED_INT);
-}
-
-// The format of the target. Without float targets fixed point is the next best, which holds all
-// that a framebuffer shows.
-GLenum colorFormatOf(int bits, const ContextLimits& limits)
-{
-    if (bits <= 8) return GL_RGBA8;
-    if (limits.floatTargets) return bits <= 16 ? GL_RGBA16F_ARB : GL_RGBA32F_ARB;
-    reportOnce({ErrorCode::NOT_SUPPORTED, "the context has no float targets; volumes are "
-                                          "accumulated in fixed point, 16 bits a channel"});
-    return GL_RGBA16;
+    if (bits <= 8) return {GL_RGBA8};
+    if (!limits.floatTargets) {
+        reportOnce({ErrorCode::NOT_SUPPORTED, "the context has no float targets; volumes are "
+                                              "accumulated in fixed point, 16 bits a channel"});
+        return {GL_RGBA16, GL_RGBA8};
+    }
+    if (bits <= 16) return {GL_RGBA16F_ARB, GL_RGBA8};
+    return {GL_RGBA32F_ARB, GL_RGBA16F_ARB, GL_RGBA8};
 }
 
 // Binds a texture for raw GL calls, and makes OSG bind its own again before the next leaf.
@@ -64,234 +43,64 @@ void bindForCopy(osg::State& state, osg::Texture2D& texture)
     state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
-GLuint textureName(osg::State& state, osg::Texture2D& texture)
+// What decides which formats can be blitted to.
+std::uint64_t blitKey(const Framebuffer& f, GLbitfield what)
 {
-    bindForCopy(state, texture);
-    return texture.getTextureObject(state.getContextID())->id();
-}
-
-// Bits of an attachment of the framebuffer that is drawn to; `window` names the same part of a
-// window.
-GLint attachmentBits(const ContextResources& resources, GLint framebuffer, GLenum attachment,
-                     GLenum window, GLenum parameter)
-{
-    GLint bits = 0;
-    resources.glGetFramebufferAttachmentParameteriv(
-        GL_DRAW_FRAMEBUFFER_EXT, framebuffer ? attachment : window, parameter, &bits);
-    return bits;
-}
-
-// As precise as the framebuffer's own depth, so that equal depths stay equal; of several samples
-// one is got only by a blit between like formats.
-GLenum depthFormatOfFramebuffer(const ContextResources& resources, GLint framebuffer, bool samples)
-{
-    const GLint bits = attachmentBits(resources, framebuffer, GL_DEPTH_ATTACHMENT_EXT, GL_DEPTH,
-                                      GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE);
-    if (samples && attachmentBits(resources, framebuffer, GL_STENCIL_ATTACHMENT_EXT, GL_STENCIL,
-                                  GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE) > 0)
-        return bits > 24 ? GL_DEPTH32F_STENCIL8 : GL_DEPTH24_STENCIL8_EXT;
-    return bits > 24 ? GL_DEPTH_COMPONENT32F : GL_DEPTH_COMPONENT24;
-}
-
-void ensureDepth(AccumulationBuffers& buffers, int width, int height, GLenum depthFormat)
-{
-    if (buffers.opaqueDepth && buffers.width >= width && buffers.height >= height &&
-        buffers.depthFormat == depthFormat)
-        return;
-    buffers.width = std::max(width, buffers.width);
-    buffers.height = std::max(height, buffers.height);
-    buffers.depthFormat = depthFormat;
-    buffers.opaqueDepth = makeDepth(buffers.width, buffers.height, depthFormat);
-    buffers.color = nullptr;
-    buffers.layerDepth = nullptr;
-    buffers.layers.rankDepth = nullptr;
-}
-
-void ensureTarget(osg::State& state, AccumulationBuffers& buffers, GLenum colorFormat)
-{
-    if (buffers.color && buffers.colorFormat == colorFormat) return;
-    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    buffers.colorFormat = colorFormat;
-    buffers.color = makeTarget(buffers.width, buffers.height, colorFormat, GL_RGBA, GL_FLOAT);
-    buffers.depth = makeDepth(buffers.width, buffers.height, buffers.depthFormat);
-    const GLuint color = textureName(state, *buffers.color);
-    const GLuint depth = textureName(state, *buffers.depth);
-    if (!buffers.framebuffer) gl.glGenFramebuffers(1, &buffers.framebuffer);
-    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.framebuffer);
-    gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D, color,
-                              0);
-    gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth, 0);
-}
-
-// Of the leaf that ends accumulation: writes depth.
-osg::ref_ptr<osg::StateSet> depthStateSet()
-{
-    return sharedStateSet(SharedState::DEPTH, []() {
-        osg::ref_ptr<osg::StateSet> set = screenState("depth.frag.glsl", true);
-        set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
-        set->addUniform(new osg::Uniform("targetDepth", int(UNIT_LAYER_DEPTH)));
-        return set;
-    });
-}
-
-// Clearing the layer buffer needs depth writes.
-osg::ref_ptr<osg::StateSet> accumulationStateSet()
-{
-    return sharedStateSet(SharedState::ACCUMULATION, []() {
-        osg::ref_ptr<osg::StateSet> s = new osg::StateSet;
-        s->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true),
-                                osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE |
-                                    osg::StateAttribute::PROTECTED);
-        return s;
-    });
-}
-
-// Depth in float, so that what is written back from a texture is what was captured, to the last
-// bit.
-osg::ref_ptr<osg::Texture2D> makeDepthStencil(int width, int height)
-{
-    return makeTarget(width, height, GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL_EXT,
-                      GL_FLOAT_32_UNSIGNED_INT_24_8_REV);
-}
-
-void makeLayerTextures(osg::State& state, AccumulationBuffers& buffers)
-{
-    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    LayerBuffers& layers = buffers.layers;
-    const int w = buffers.width, h = buffers.height;
-    const auto attach = [&](GLenum attachment, osg::Texture2D& texture) {
-        gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, attachment, GL_TEXTURE_2D,
-                                  textureName(state, texture), 0);
-    };
-    if (!layers.queries[0]) {
-        gl.glGenQueries(LayerBuffers::COUNT, layers.queries);
-        gl.glGenFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
-        gl.glGenFramebuffers(1, &layers.sortedFramebuffer);
-        gl.glGenFramebuffers(1, &layers.rankFramebuffer);
-    }
-    for (int k = 0; k < LayerBuffers::COUNT; ++k) {
-        layers.layers[k] = makeDepthStencil(w, h);
-        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.layerFramebuffers[k]);
-        attach(GL_DEPTH_STENCIL_ATTACHMENT, *layers.layers[k]);
-        glDrawBuffer(GL_NONE);
-        glReadBuffer(GL_NONE);
-    }
-    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.sortedFramebuffer);
-    for (int i = 0; i < 2; ++i) {
-        layers.sorted[i] = makeTarget(w, h, GL_RGBA32F_ARB, GL_RGBA, GL_FLOAT);
-        attach(GL_COLOR_ATTACHMENT0_EXT + static_cast<GLenum>(i), *layers.sorted[i]);
-    }
-    const GLenum both[2] = {GL_COLOR_ATTACHMENT0_EXT, GL_COLOR_ATTACHMENT1_EXT};
-    gl.glDrawBuffers(2, both);
-    layers.rankDepth = makeDepthStencil(w, h);
-    layers.rankColor = nullptr;
-    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, layers.rankFramebuffer);
-    attach(GL_DEPTH_STENCIL_ATTACHMENT, *layers.rankDepth);
-}
-
-osg::ref_ptr<osg::Texture2DArray> makeArray(int width, int height, int layers,
-                                            GLenum internalFormat, GLenum format, GLenum type)
-{
-    osg::ref_ptr<osg::Texture2DArray> texture = new osg::Texture2DArray;
-    texture->setTextureSize(width, height, layers);
-    texture->setInternalFormat(static_cast<GLint>(internalFormat));
-    texture->setSourceFormat(format);
-    texture->setSourceType(type);
-    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
-    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
-    texture->setResizeNonPowerOfTwoHint(false);
-    texture->setDataVariance(osg::Object::STATIC);
-    return texture;
-}
-
-GLuint arrayName(osg::State& state, osg::Texture2DArray& texture)
-{
-    state.setActiveTextureUnit(UNIT_OPAQUE_DEPTH);
-    texture.apply(state);
-    state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
-    return texture.getTextureObject(state.getContextID())->id();
-}
-
-void makeCaptureTextures(osg::State& state, const AccumulationBuffers& accumulation,
-                         CaptureBuffers& buffers, int slotCount)
-{
-    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    if (!buffers.queries[0]) {
-        gl.glGenQueries(CaptureBuffers::MAXIMUM_SLOTS, buffers.queries);
-        gl.glGenFramebuffers(CaptureBuffers::MAXIMUM_SLOTS, buffers.framebuffers);
-        gl.glGenFramebuffers(1, &buffers.sortedFramebuffer);
-        gl.glGenFramebuffers(1, &buffers.restFramebuffer);
-    }
-    const int w = accumulation.width, h = accumulation.height;
-    buffers.width = w;
-    buffers.height = h;
-    buffers.slotCount = slotCount;
-    buffers.colorFormat = accumulation.colorFormat;
-    buffers.colors = makeArray(w, h, slotCount, accumulation.colorFormat, GL_RGBA, GL_FLOAT);
-    buffers.depths = makeArray(w, h, slotCount, GL_DEPTH24_STENCIL8_EXT, GL_DEPTH_STENCIL_EXT,
-                               GL_UNSIGNED_INT_24_8_EXT);
-    buffers.sorted = makeArray(w, h, sortedLayers(slotCount), GL_RGBA32F_ARB, GL_RGBA, GL_FLOAT);
-    const GLuint colors = arrayName(state, *buffers.colors);
-    const GLuint depths = arrayName(state, *buffers.depths);
-    const GLuint sorted = arrayName(state, *buffers.sorted);
-    for (int slot = 0; slot < slotCount; ++slot) {
-        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.framebuffers[slot]);
-        gl.glFramebufferTextureLayer(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, colors, 0, slot);
-        gl.glFramebufferTextureLayer(GL_FRAMEBUFFER_EXT, GL_DEPTH_STENCIL_ATTACHMENT, depths, 0,
-                                     slot);
-    }
-    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.sortedFramebuffer);
-    std::vector<GLenum> targets;
-    for (int layer = 0; layer < sortedLayers(slotCount); ++layer) {
-        targets.push_back(GL_COLOR_ATTACHMENT0_EXT + static_cast<GLenum>(layer));
-        gl.glFramebufferTextureLayer(GL_FRAMEBUFFER_EXT, targets.back(), sorted, 0, layer);
-    }
-    gl.glDrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
-    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.restFramebuffer);
-    gl.glFramebufferTextureLayer(GL_FRAMEBUFFER_EXT, GL_DEPTH_STENCIL_ATTACHMENT, depths, 0, 0);
-    buffers.restColor = nullptr;
-}
-
-// Gives a framebuffer the target's colour, unless that is what is attached already.
-void attachColor(osg::State& state, GLuint framebuffer, osg::Texture2D& color,
-                 const osg::Texture2D*& attached)
-{
-    if (attached == &color) return;
-    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const GLuint name = textureName(state, color);
-    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, framebuffer);
-    gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D, name, 0);
-    attached = &color;
+    std::uint64_t key = f.draw == 0;
+    key = key << 1 | std::uint64_t(f.multisampled);
+    key = key << 1 | std::uint64_t(f.floatDepth);
+    key = key << 8 | std::uint64_t(f.depthBits & 0xff);
+    key = key << 8 | std::uint64_t(f.stencilBits & 0xff);
+    return key << 32 | what;
 }
 
 } // namespace
 
-CaptureBuffers& Accumulation::captureBuffers(osg::State& state, int slotCount)
+Accumulation::Accumulation(const AccumulationSettings& settings)
+    : _settings(settings), _area(visiblePart(settings.viewport))
 {
-    const std::shared_ptr<ContextResources> resources = contextResources(state);
-    const AccumulationBuffers& accumulation = resources->accumulation;
-    CaptureBuffers& buffers = resources->capture;
-    if (buffers.slotCount < slotCount || buffers.width != accumulation.width ||
-        buffers.height != accumulation.height || buffers.colorFormat != accumulation.colorFormat)
-        makeCaptureTextures(state, accumulation, buffers, slotCount);
-    attachColor(state, buffers.restFramebuffer, *accumulation.color, buffers.restColor);
-    return buffers;
 }
 
-LayerBuffers& Accumulation::layerBuffers(osg::State& state)
+void Accumulation::restrictTo(const glm::ivec4& area)
+{
+    _area = visiblePart(area);
+}
+
+CaptureBuffers* Accumulation::captureBuffers(osg::State& state, int slotCount) const
+{
+    ContextResources& resources = *contextResources(state);
+    const bool made =
+        _redirected && ensureCapture(state, resources.accumulation, resources.capture, slotCount);
+    bindTarget(state);
+    return made ? &resources.capture : nullptr;
+}
+
+LayerBuffers* Accumulation::layerBuffers(osg::State& state) const
 {
     AccumulationBuffers& buffers = contextResources(state)->accumulation;
-    LayerBuffers& layers = buffers.layers;
-    if (!layers.rankDepth) makeLayerTextures(state, buffers);
-    attachColor(state, layers.rankFramebuffer, *buffers.color, layers.rankColor);
-    return layers;
+    const bool made = _redirected && ensureLayers(state, buffers);
+    bindTarget(state);
+    return made ? &buffers.layers : nullptr;
 }
 
-bool Accumulation::needsTarget(const ContextResources& resources) const
+bool Accumulation::needsTarget() const
 {
-    return _targetRequired || _sampleBuffers > 0 ||
-           attachmentBits(resources, _drawFramebuffer, GL_COLOR_ATTACHMENT0_EXT, GL_BACK_LEFT,
-                          GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE) < _settings.bits;
+    return _targetRequired || _framebuffer.multisampled || _framebuffer.colorBits < _settings.bits;
+}
+
+// As precise as the framebuffer's own depth, so that equal depths stay equal. Of several samples
+// one is got only by a blit between like formats, and so are stencil values.
+GLenum Accumulation::depthFormat(osg::State& state, AccumulationBuffers& buffers) const
+{
+    const bool precise = _framebuffer.floatDepth || _framebuffer.depthBits > 24;
+    const GLenum usual = precise ? GL_DEPTH_COMPONENT32F : GL_DEPTH_COMPONENT24;
+    if (!_depthBlitted) return usual;
+    const GLbitfield depth = _framebuffer.depthBits > 0 ? GL_DEPTH_BUFFER_BIT : 0u;
+    const GLbitfield what = depth | (_stencilUsed ? GL_STENCIL_BUFFER_BIT : 0u);
+    const auto known = buffers.blitFormats.emplace(blitKey(_framebuffer, what), GLenum(GL_NONE));
+    if (known.second)
+        known.first->second = findBlitFormat(*state.get<osg::GLExtensions>(), _framebuffer, what);
+    return known.first->second;
 }
 
 void Accumulation::begin(osg::RenderInfo& renderInfo)
@@ -299,32 +108,50 @@ void Accumulation::begin(osg::RenderInfo& renderInfo)
     osg::State& state = *renderInfo.getState();
     const std::shared_ptr<ContextResources> resources = contextResources(state);
     AccumulationBuffers& buffers = resources->accumulation;
-    const glm::ivec4& viewport = _settings.viewport;
-    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING_EXT, &_drawFramebuffer);
-    glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING_EXT, &_readFramebuffer);
-    glGetIntegerv(GL_SAMPLE_BUFFERS, &_sampleBuffers);
-
-    ensureDepth(buffers, viewport[0] + viewport[2], viewport[1] + viewport[3],
-                depthFormatOfFramebuffer(*resources, _drawFramebuffer, _sampleBuffers > 0));
+    _framebuffer = queryFramebuffer(*resources);
+    buffers.drawBuffers = _framebuffer.drawBuffers;
+    _depthCleared = _depthCleared || _framebuffer.depthBits == 0;
+    _stencilUsed = _stencilUsed && _framebuffer.stencilBits > 0;
+    _depthBlitted = _stencilUsed || (_framebuffer.multisampled && !_depthCleared);
+    GLenum format = depthFormat(state, buffers);
+    if (format == GL_NONE) {
+        reportOnce({ErrorCode::NOT_SUPPORTED,
+                    "the depth and stencil buffers of the framebuffer cannot be copied; volumes "
+                    "are drawn without regard to what is in them"});
+        _depthCleared = true;
+        _stencilUsed = _depthBlitted = false;
+        format = depthFormat(state, buffers);
+    }
     const auto countCopied = [&](const char* name, int copies) {
         count(renderInfo.getCurrentCamera(), state.getFrameStamp(), name,
               double(copies) * _area[2] * _area[3]);
     };
-    buffers.hasOpaqueDepth = !_depthCleared;
-    if (!_depthCleared) {
-        copyOpaqueDepth(state, buffers);
-        countCopied("osgVolumizer depths copied", 1);
-    }
-    if (needsTarget(*resources)) {
+    const bool visible = _area[2] > 0 && _area[3] > 0;
+    const bool hasDepth = visible && ensureOpaqueDepth(state, buffers, _area[0] + _area[2],
+                                                       _area[1] + _area[3], format);
+    buffers.hasOpaqueDepth = hasDepth && !_depthCleared;
+    if (hasDepth) copyOpaqueDepth(state, buffers);
+    if (buffers.hasOpaqueDepth) countCopied("osgVolumizer depths copied", 1);
+    if (hasDepth && needsTarget() &&
+        ensureTarget(state, buffers, colorFormats(_settings.bits, resources->limits))) {
         countCopied("osgVolumizer colors copied", 2); // and back
-        ensureTarget(state, buffers, colorFormatOf(_settings.bits, resources->limits));
-        copyToTarget(state, buffers);
         _redirected = true;
+        copyToTarget(state, buffers);
+        shareOtherBuffers(state, *resources);
     }
+    bindTarget(state);
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
 }
 
-void Accumulation::blitFrom(osg::GLExtensions& gl, GLuint from, GLuint to, GLbitfield what) const
+void Accumulation::bindTarget(osg::State& state) const
+{
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const GLuint target = contextResources(state)->accumulation.framebuffer;
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, _redirected ? target : _framebuffer.draw);
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, _redirected ? target : _framebuffer.read);
+}
+
+void Accumulation::blit(osg::GLExtensions& gl, GLuint from, GLuint to, GLbitfield what) const
 {
     const int x0 = _area[0], y0 = _area[1], x1 = x0 + _area[2], y1 = y0 + _area[3];
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, from);
@@ -332,41 +159,53 @@ void Accumulation::blitFrom(osg::GLExtensions& gl, GLuint from, GLuint to, GLbit
     gl.glBlitFramebuffer(x0, y0, x1, y1, x0, y0, x1, y1, what, GL_NEAREST);
 }
 
-void Accumulation::copyTo(osg::State& state, osg::Texture2D& depth, GLuint from) const
-{
-    state.get<osg::GLExtensions>()->glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, from);
-    bindForCopy(state, depth);
-    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, _area[0], _area[1], _area[0], _area[1], _area[2],
-                        _area[3]);
-}
-
-void Accumulation::copyOpaqueDepth(osg::State& state, AccumulationBuffers& buffers)
+void Accumulation::copyOpaqueDepth(osg::State& state, AccumulationBuffers& buffers) const
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const GLuint source = static_cast<GLuint>(_drawFramebuffer);
-    if (_sampleBuffers == 0) {
-        copyTo(state, *buffers.opaqueDepth, source);
-        return;
+    if (_depthCleared) {
+        if (_framebuffer.depthBits > 0) return;
+        gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, buffers.opaqueFramebuffer);
+        clearArea(_area, GL_DEPTH_BUFFER_BIT);
+    } else if (_depthBlitted) {
+        blit(gl, _framebuffer.draw, buffers.opaqueFramebuffer, GL_DEPTH_BUFFER_BIT);
+    } else {
+        gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, _framebuffer.draw);
+        bindForCopy(state, *buffers.opaqueDepth);
+        glCopyTexSubImage2D(GL_TEXTURE_2D, 0, _area[0], _area[1], _area[0], _area[1], _area[2],
+                            _area[3]);
     }
-    const GLuint depth = textureName(state, *buffers.opaqueDepth);
-    if (!buffers.resolveFramebuffer) gl.glGenFramebuffers(1, &buffers.resolveFramebuffer);
-    gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.resolveFramebuffer);
-    gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth, 0);
-    glDrawBuffer(GL_NONE);
-    glReadBuffer(GL_NONE);
-    blitFrom(gl, source, buffers.resolveFramebuffer, GL_DEPTH_BUFFER_BIT);
-    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, source);
 }
 
-void Accumulation::copyToTarget(osg::State& state, AccumulationBuffers& buffers)
+void Accumulation::copyToTarget(osg::State& state, AccumulationBuffers& buffers) const
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const GLuint source = static_cast<GLuint>(_drawFramebuffer);
-    const bool blitsDepth = _sampleBuffers > 0 && !_depthCleared;
-    if (!_depthCleared && !blitsDepth) copyTo(state, *buffers.depth, source);
-    blitFrom(gl, source, buffers.framebuffer,
-             GL_COLOR_BUFFER_BIT | (blitsDepth ? GL_DEPTH_BUFFER_BIT : 0u));
+    GLbitfield what = _stencilUsed ? GL_STENCIL_BUFFER_BIT : 0u;
+    if (!_depthCleared) {
+        // From our own copy: a blit between like formats, whatever the framebuffer has.
+        blit(gl, buffers.opaqueFramebuffer, buffers.framebuffer, GL_DEPTH_BUFFER_BIT);
+    }
+    if (_framebuffer.hasColor()) what |= GL_COLOR_BUFFER_BIT;
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, _framebuffer.draw);
+    if (_framebuffer.hasColor()) {
+        const ReadBufferScope read(_framebuffer.drawBuffers.front());
+        blit(gl, _framebuffer.draw, buffers.framebuffer, what);
+    } else if (what) {
+        blit(gl, _framebuffer.draw, buffers.framebuffer, what);
+    }
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, buffers.framebuffer);
     if (_depthCleared) clearArea(_area, GL_DEPTH_BUFFER_BIT);
+}
+
+// Outputs of shaders beyond the first go where they would go without volumes: textures and render
+// buffers of the framebuffer belong to the target too. Not those of several samples, which cannot
+// be drawn to together with one of one sample.
+void Accumulation::shareOtherBuffers(osg::State& state, ContextResources& resources) const
+{
+    AccumulationBuffers& buffers = resources.accumulation;
+    buffers.drawBuffers = {GL_COLOR_ATTACHMENT0_EXT};
+    if (_framebuffer.drawBuffers.size() > 1 && _framebuffer.draw && !_framebuffer.multisampled)
+        buffers.drawBuffers = shareAttachments(*state.get<osg::GLExtensions>(), resources,
+                                               _framebuffer, buffers.framebuffer);
 }
 
 void Accumulation::end(osg::RenderInfo& renderInfo)
@@ -374,91 +213,51 @@ void Accumulation::end(osg::RenderInfo& renderInfo)
     osg::State& state = *renderInfo.getState();
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     if (_redirected) writeBack(state, *contextResources(state));
-    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
-    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_readFramebuffer));
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, _framebuffer.draw);
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, _framebuffer.read);
     state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
 void Accumulation::beginLayer(osg::RenderInfo& renderInfo, const glm::ivec4& area)
 {
     osg::State& state = *renderInfo.getState();
-    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const std::shared_ptr<ContextResources> resources = contextResources(state);
-    AccumulationBuffers& buffers = resources->accumulation;
-    if (!buffers.layerDepth) {
-        buffers.layerDepth = makeDepth(buffers.width, buffers.height, buffers.depthFormat);
-        const GLuint depth = textureName(state, *buffers.layerDepth);
-        if (!buffers.layerFramebuffer) gl.glGenFramebuffers(1, &buffers.layerFramebuffer);
-        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, buffers.layerFramebuffer);
-        gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_DEPTH_ATTACHMENT_EXT, GL_TEXTURE_2D, depth,
-                                  0);
-        glDrawBuffer(GL_NONE);
-        glReadBuffer(GL_NONE);
+    AccumulationBuffers& buffers = contextResources(state)->accumulation;
+    if (!ensureLayerDepth(state, buffers)) {
+        // Nothing splits the segment then.
+        glEnable(GL_RASTERIZER_DISCARD);
+        return;
     }
-    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, buffers.layerFramebuffer);
-    const ScissorScope scissor;
-    scissor.set(area);
-    glClear(GL_DEPTH_BUFFER_BIT);
+    bindFramebuffer(state, buffers.layerFramebuffer);
+    clearArea(area, GL_DEPTH_BUFFER_BIT);
 }
 
 void Accumulation::endLayer(osg::RenderInfo& renderInfo)
 {
     osg::State& state = *renderInfo.getState();
-    const GLuint target = _redirected ? contextResources(state)->accumulation.framebuffer
-                                      : static_cast<GLuint>(_drawFramebuffer);
-    state.get<osg::GLExtensions>()->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, target);
+    if (!contextResources(state)->accumulation.layerDepth) glDisable(GL_RASTERIZER_DISCARD);
+    bindTarget(state);
 }
 
-void Accumulation::writeBack(osg::State& state, ContextResources& resources)
+void Accumulation::writeBack(osg::State& state, ContextResources& resources) const
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const AccumulationBuffers& buffers = resources.accumulation;
-    blitFrom(gl, buffers.framebuffer, static_cast<GLuint>(_drawFramebuffer), GL_COLOR_BUFFER_BIT);
-    if (!_depthKept) return;
+    AccumulationBuffers& buffers = resources.accumulation;
+    if (buffers.drawBuffers.size() > 1)
+        unshareAttachments(gl, buffers.framebuffer, buffers.drawBuffers.size());
+    buffers.drawBuffers = _framebuffer.drawBuffers;
+    const GLbitfield stencil = _stencilUsed ? GL_STENCIL_BUFFER_BIT : 0u;
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, _framebuffer.draw);
+    {
+        const FirstDrawBufferScope first(gl, _framebuffer.drawBuffers);
+        const GLbitfield what = stencil | (_framebuffer.hasColor() ? GL_COLOR_BUFFER_BIT : 0u);
+        if (what) blit(gl, buffers.framebuffer, _framebuffer.draw, what);
+    }
+    if (!_depthKept || _framebuffer.depthBits == 0) return;
     // Not a blit, which would need the framebuffer's very format.
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth);
     state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.depth);
     drawScreen(state, resources, _area);
     state.haveAppliedTextureAttribute(UNIT_LAYER_DEPTH, osg::StateAttribute::TEXTURE);
-}
-
-AccumulationLeaf::AccumulationLeaf(Accumulation* accumulation, Step step, const glm::ivec4& area)
-    : _accumulation(accumulation), _step(step), _area(area)
-{
-    setSupportsDisplayList(false);
-    setUseDisplayList(false);
-    setUseVertexBufferObjects(false);
-    setDataVariance(osg::Object::STATIC);
-}
-
-void AccumulationLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
-{
-    if (!_accumulation) return;
-    switch (_step) {
-    case BEGIN:
-        _accumulation->begin(renderInfo);
-        break;
-    case END:
-        _accumulation->end(renderInfo);
-        break;
-    case BEGIN_LAYER:
-        _accumulation->beginLayer(renderInfo, _area);
-        break;
-    case END_LAYER:
-        _accumulation->endLayer(renderInfo);
-        break;
-    }
-}
-
-osgUtil::RenderLeaf* accumulationLeaf(Accumulation& accumulation, AccumulationLeaf::Step step,
-                                      const osgUtil::RenderLeaf& beside, const glm::ivec4& area)
-{
-    osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
-        new AccumulationLeaf(&accumulation, step, area), beside._projection, beside._modelview);
-    const bool writesDepth = step == AccumulationLeaf::END && accumulation.isDepthKept();
-    const osg::ref_ptr<osg::StateSet> set = writesDepth ? depthStateSet() : accumulationStateSet();
-    beside._parent->find_or_insert(set)->addLeaf(leaf);
-    return leaf.get();
 }
 
 } // namespace render

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ContextResources.h"
+#include "Framebuffer.h"
 
 #include <osg/Drawable>
 #include <osgUtil/RenderLeaf>
@@ -25,13 +26,14 @@ struct AccumulationSettings
 /// function still finds the colours it expects. So it is with several samples a pixel: colours are
 /// resolved, depths are those of one sample, and what is drawn between has one; edges of opaque
 /// geometry stay smooth. end() writes the result back. Both run in the draw thread, in one context.
+///
+/// What other outputs of shaders go to (several draw buffers) is drawn to as it would be without
+/// volumes, which write the first output alone. Stencil values come to the target and go back where
+/// a leaf asks for them.
 class Accumulation : public osg::Referenced
 {
 public:
-    explicit Accumulation(const AccumulationSettings& settings)
-        : _settings(settings), _area(settings.viewport)
-    {
-    }
+    explicit Accumulation(const AccumulationSettings& settings);
 
     void begin(osg::RenderInfo& renderInfo);
     void end(osg::RenderInfo& renderInfo);
@@ -40,67 +42,44 @@ public:
     void beginLayer(osg::RenderInfo& renderInfo, const glm::ivec4& area);
     /// ...for segments to be split at.
     void endLayer(osg::RenderInfo& renderInfo);
+    /// Where surfaces may be drawn by a state that counts stencil values: a target without any.
+    bool hasPlainTarget() const { return _redirected && !_stencilUsed; }
+    /// Draws to the target again: the framebuffer itself where nothing was redirected.
+    void bindTarget(osg::State& state) const;
 
     /// Before the frame is drawn: there has to be a target, whatever the framebuffer has.
     void requireTarget() { _targetRequired = true; }
     /// Before the frame is drawn: what surfaces leave in the target's depth is for the framebuffer.
     void keepDepth() { _depthKept = true; }
     bool isDepthKept() const { return _depthKept; }
+    /// Before the frame is drawn: leaves test or write stencil values.
+    void useStencil() { _stencilUsed = true; }
     /// Before the frame is drawn: nothing is drawn outside this part (x, y, width, height) of the
     /// viewport, so no more has to be copied.
-    void restrictTo(const glm::ivec4& area) { _area = area; }
+    void restrictTo(const glm::ivec4& area);
     /// Before the frame is drawn: the depth buffer is as it was cleared, to 1, so it is not copied.
     void expectClearedDepth() { _depthCleared = true; }
-    /// The buffers of sorted layers, made when first asked for, with the target's colour.
-    LayerBuffers& layerBuffers(osg::State& state);
-    /// The buffers of captured surfaces, with at least so many slots.
-    CaptureBuffers& captureBuffers(osg::State& state, int slotCount);
+    /// The buffers of sorted layers, with the target's colour; null where the card has no memory
+    /// for them.
+    LayerBuffers* layerBuffers(osg::State& state) const;
+    /// The buffers of captured surfaces, with at least so many slots; null likewise.
+    CaptureBuffers* captureBuffers(osg::State& state, int slotCount) const;
 
 private:
-    bool needsTarget(const ContextResources& resources) const;
-    void copyTo(osg::State& state, osg::Texture2D& depth, GLuint from) const;
-    void copyOpaqueDepth(osg::State& state, AccumulationBuffers& buffers);
-    void copyToTarget(osg::State& state, AccumulationBuffers& buffers);
-    void blitFrom(osg::GLExtensions& gl, GLuint from, GLuint to, GLbitfield what) const;
-    void writeBack(osg::State& state, ContextResources& resources);
+    bool needsTarget() const;
+    GLenum depthFormat(osg::State& state, AccumulationBuffers& buffers) const;
+    void copyOpaqueDepth(osg::State& state, AccumulationBuffers& buffers) const;
+    void copyToTarget(osg::State& state, AccumulationBuffers& buffers) const;
+    void shareOtherBuffers(osg::State& state, ContextResources& resources) const;
+    void blit(osg::GLExtensions& gl, GLuint from, GLuint to, GLbitfield what) const;
+    void writeBack(osg::State& state, ContextResources& resources) const;
 
     AccumulationSettings _settings;
     glm::ivec4 _area;
     bool _redirected = false, _targetRequired = false, _depthKept = false, _depthCleared = false;
-    GLint _drawFramebuffer = 0, _readFramebuffer = 0, _sampleBuffers = 0;
+    bool _stencilUsed = false, _depthBlitted = false;
+    Framebuffer _framebuffer; ///< that begin() found
 };
-
-/// The leaf that calls one of Accumulation's steps.
-class AccumulationLeaf : public osg::Drawable
-{
-public:
-    enum Step
-    {
-        BEGIN,
-        END,
-        BEGIN_LAYER,
-        END_LAYER
-    };
-
-    AccumulationLeaf(Accumulation* accumulation, Step step, const glm::ivec4& area);
-    osg::Object* cloneType() const override
-    {
-        return new AccumulationLeaf(nullptr, BEGIN, glm::ivec4(0));
-    }
-    osg::Object* clone(const osg::CopyOp&) const override { return cloneType(); }
-    const char* libraryName() const override { return "osgVolumizer"; }
-    const char* className() const override { return "AccumulationLeaf"; }
-    void drawImplementation(osg::RenderInfo& renderInfo) const override;
-
-private:
-    osg::ref_ptr<Accumulation> _accumulation;
-    Step _step;
-    glm::ivec4 _area;
-};
-
-/// A leaf for a step, among the leaves of the same bin and view as `beside`.
-osgUtil::RenderLeaf* accumulationLeaf(Accumulation& accumulation, AccumulationLeaf::Step step,
-                                      const osgUtil::RenderLeaf& beside, const glm::ivec4& area);
 
 } // namespace render
 } // namespace osgVolumizer

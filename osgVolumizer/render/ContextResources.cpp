@@ -1,5 +1,6 @@
 #include "ContextResources.h"
 
+#include "ContextRefusals.h"
 #include "SharedStateSets.h"
 
 #include <osg/ContextData>
@@ -26,6 +27,7 @@ std::map<unsigned, std::shared_ptr<ContextResources>>& registry()
 
 std::shared_ptr<ContextResources> take(unsigned contextId)
 {
+    forgetRefusals(contextId);
     std::lock_guard<std::mutex> lock(registryMutex());
     const auto entry = registry().find(contextId);
     if (entry == registry().end()) return nullptr;
@@ -42,7 +44,7 @@ void deleteNames(ContextResources& resources, osg::GLExtensions& gl)
     AccumulationBuffers& buffers = resources.accumulation;
     LayerBuffers& layers = buffers.layers;
     for (GLuint* name :
-         {&buffers.framebuffer, &buffers.layerFramebuffer, &buffers.resolveFramebuffer,
+         {&buffers.framebuffer, &buffers.layerFramebuffer, &buffers.opaqueFramebuffer,
           &layers.sortedFramebuffer, &layers.rankFramebuffer, &resources.rays.framebuffer})
         if (*name) gl.glDeleteFramebuffers(1, name);
     CaptureBuffers& capture = resources.capture;
@@ -138,6 +140,8 @@ void releaseContextResources(osg::State* state)
     // No context is current: the names go with their contexts.
     releaseSharedStateSets(nullptr);
     std::lock_guard<std::mutex> lock(registryMutex());
+    for (const auto& entry : registry())
+        forgetRefusals(entry.first);
     registry().clear();
 }
 

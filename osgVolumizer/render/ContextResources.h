@@ -8,9 +8,11 @@
 #include <osg/Texture2D>
 #include <osg/Texture2DArray>
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace osgVolumizer {
 namespace render {
@@ -35,7 +37,7 @@ struct LayerBuffers
     GLuint layerFramebuffers[COUNT] = {}, sortedFramebuffer = 0, rankFramebuffer = 0;
     GLuint queries[COUNT] = {};
     osg::ref_ptr<osg::Texture2D> layers[COUNT], sorted[2], rankDepth; ///< null until needed
-    const osg::Texture2D* rankColor = nullptr; ///< that the rank framebuffer has for colour
+    unsigned rankColorCount = 0; ///< AccumulationBuffers::colorCount of the rank framebuffer's
 };
 
 /// Buffers of captured surfaces: see CaptureLeaf.
@@ -48,7 +50,7 @@ struct CaptureBuffers
     GLuint framebuffers[MAXIMUM_SLOTS] = {}, sortedFramebuffer = 0, restFramebuffer = 0;
     GLuint queries[MAXIMUM_SLOTS] = {};
     osg::ref_ptr<osg::Texture2DArray> colors, depths, sorted;
-    const osg::Texture2D* restColor = nullptr; ///< that the rest framebuffer has for colour
+    unsigned restColorCount = 0; ///< AccumulationBuffers::colorCount of the rest framebuffer's
 };
 /// Layers of `sorted`: four depths each, then sixteen slots each.
 constexpr int sortedLayers(int slotCount)
@@ -63,9 +65,14 @@ struct AccumulationBuffers
 {
     int width = 0, height = 0;
     GLenum colorFormat = 0, depthFormat = 0;
-    GLuint framebuffer = 0, layerFramebuffer = 0;
-    bool hasOpaqueDepth = false;   ///< of this frame; else nothing opaque was drawn
-    GLuint resolveFramebuffer = 0; ///< of opaqueDepth, for framebuffers with several samples
+    GLenum askedFormat = 0;  ///< of colour, which the card may have had no memory for
+    unsigned colorCount = 0; ///< of textures that `color` has been
+    GLuint framebuffer = 0, layerFramebuffer = 0, opaqueFramebuffer = 0;
+    bool hasOpaqueDepth = false; ///< of this frame; else nothing opaque was drawn
+    /// Of what is drawn into now, by output location: volumes write the first alone.
+    std::vector<GLenum> drawBuffers;
+    /// Formats that depths can be blitted to, by the properties of framebuffers met so far.
+    std::map<std::uint64_t, GLenum> blitFormats;
     osg::ref_ptr<osg::Texture2D> color, depth, opaqueDepth, layerDepth;
     LayerBuffers layers;
 };

@@ -158,6 +158,7 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
         return;
 
     if (osg::StateSet* own = geometry.getStateSet()) visitor.pushStateSet(own);
+    look->above = stateAbove(visitor.getCurrentStateGraph());
     registerVolume(std::move(volume), visitor);
     if (geometry.getStateSet()) visitor.popStateSet();
 }

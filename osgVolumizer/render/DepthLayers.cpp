@@ -1,5 +1,7 @@
 #include "DepthLayers.h"
 
+#include "ContextRefusals.h"
+#include "ReportOnce.h"
 #include "ScreenPass.h"
 #include "SharedStateSets.h"
 #include "VolumeProgram.h"
@@ -56,13 +58,33 @@ osg::ref_ptr<osg::StateSet> LayerLeaf::stateSet(Step step)
     return clearState();
 }
 
+// In the frame that finds that the card has no memory for layers, surfaces are drawn after the
+// volumes.
+void LayerLeaf::drawWithout(osg::State& state) const
+{
+    reportOnce({ErrorCode::NOT_SUPPORTED, "the card has no memory for layers of surfaces; those "
+                                          "in volumes are sorted by intervals of depth"});
+    refuse(state.getContextID(), Refusal::RANKED_SURFACES);
+    const bool begins = _step == BEGIN_CAPTURE || _step == BEGIN_RANK ||
+                        (_step == BEGIN_REST && !_accumulation->hasPlainTarget());
+    if (begins)
+        glEnable(GL_RASTERIZER_DISCARD);
+    else
+        glDisable(GL_RASTERIZER_DISCARD);
+}
+
 void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     if (!_accumulation) return;
     osg::State& state = *renderInfo.getState();
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const std::shared_ptr<ContextResources> resources = contextResources(state);
-    const LayerBuffers& layers = _accumulation->layerBuffers(state);
+    LayerBuffers* made = _accumulation->layerBuffers(state);
+    if (!made) {
+        drawWithout(state);
+        return;
+    }
+    const LayerBuffers& layers = *made;
     switch (_step) {
     case BEGIN_CAPTURE:
         bindFramebuffer(state, layers.layerFramebuffers[_index]);
@@ -81,10 +103,10 @@ void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
                                         layers.layers[k]);
         state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, resources->accumulation.opaqueDepth);
         drawScreen(state, *resources, _area);
-        bindFramebuffer(state, resources->accumulation.framebuffer);
+        _accumulation->bindTarget(state);
         break;
     case BEGIN_SEGMENT:
-        bindFramebuffer(state, resources->accumulation.framebuffer);
+        _accumulation->bindTarget(state);
         if (_index > 0) gl.glBeginConditionalRender(layers.queries[_index - 1], WAIT_FOR_QUERY);
         break;
     case BEGIN_RANK:
@@ -104,7 +126,7 @@ void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
     case END_RANK:
     case END_REST:
         gl.glEndConditionalRender();
-        bindFramebuffer(state, resources->accumulation.framebuffer);
+        _accumulation->bindTarget(state);
         break;
     case DEPTH:
         break;

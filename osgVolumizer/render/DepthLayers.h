@@ -53,6 +53,8 @@ public:
     static osg::ref_ptr<osg::StateSet> stateSet(Step step);
 
 private:
+    void drawWithout(osg::State& state) const;
+
     osg::ref_ptr<Accumulation> _accumulation;
     Step _step;
     int _index;

@@ -1,5 +1,7 @@
 #include "ForeignLeaf.h"
 
+#include "LeafState.h"
+
 #include <osg/BlendFunc>
 #include <osg/ColorMask>
 #include <osg/Drawable>
@@ -28,54 +30,9 @@ bool sameRays(const osg::Matrixd& a, const osg::Matrixd& b)
     return true;
 }
 
-// State sets from the root down.
-std::vector<const osg::StateSet*> pathOf(const osgUtil::StateGraph* graph)
-{
-    std::vector<const osg::StateSet*> path;
-    for (; graph; graph = graph->_parent)
-        if (graph->getStateSet()) path.push_back(graph->getStateSet());
-    std::reverse(path.begin(), path.end());
-    return path;
-}
-
-// The attribute that OSG would apply for a graph: the last one on the way down that no override
-// stops.
-template <class Attribute>
-const Attribute* effective(const osgUtil::StateGraph* graph, StateAttribute::Type type)
-{
-    const Attribute* attribute = nullptr;
-    bool overridden = false;
-    for (const osg::StateSet* set : pathOf(graph)) {
-        const auto* pair = set->getAttributePair(type);
-        if (!pair || (overridden && !(pair->second & StateAttribute::PROTECTED))) continue;
-        attribute = static_cast<const Attribute*>(pair->first.get());
-        overridden = (pair->second & StateAttribute::OVERRIDE) != 0;
-    }
-    return attribute;
-}
-
-// Likewise for a mode.
-bool isOn(const osgUtil::StateGraph* graph, GLenum mode, bool byDefault)
-{
-    bool on = byDefault, overridden = false;
-    for (const osg::StateSet* set : pathOf(graph)) {
-        const StateAttribute::GLModeValue value = set->getMode(mode);
-        if (value & StateAttribute::INHERIT) continue;
-        if (overridden && !(value & StateAttribute::PROTECTED)) continue;
-        on = (value & StateAttribute::ON) != 0;
-        overridden = (value & StateAttribute::OVERRIDE) != 0;
-    }
-    return on;
-}
-
 const osg::Depth* effectiveDepth(const osgUtil::StateGraph* graph)
 {
     return effective<osg::Depth>(graph, StateAttribute::DEPTH);
-}
-
-bool isDepthTested(const osgUtil::StateGraph* graph)
-{
-    return isOn(graph, GL_DEPTH_TEST, true); // which OSG has on
 }
 
 // Normalised device z of the plane at a depth.
@@ -87,12 +44,6 @@ double deviceZ(const osg::Matrixd& p, double depth)
 
 } // namespace
 
-bool writesDepth(const osgUtil::StateGraph* graph)
-{
-    const osg::Depth* depth = effectiveDepth(graph);
-    return isDepthTested(graph) && (!depth || depth->getWriteMask());
-}
-
 bool keepsState(const osg::Drawable& drawable)
 {
     return (drawable.asGeometry() || dynamic_cast<const osgText::TextBase*>(&drawable)) &&
@@ -103,10 +54,7 @@ Blending blendingOf(const osgUtil::StateGraph* graph)
 {
     using osg::BlendFunc;
     const auto* function = effective<BlendFunc>(graph, StateAttribute::BLENDFUNC);
-    const auto* mask = effective<osg::ColorMask>(graph, StateAttribute::COLORMASK);
-    if (mask && !(mask->getRedMask() && mask->getGreenMask() && mask->getBlueMask() &&
-                  mask->getAlphaMask()))
-        return {};
+    if (!writesAllChannels(graph)) return {};
     if (!function || !isOn(graph, GL_BLEND, false) || isOn(graph, GL_COLOR_LOGIC_OP, false) ||
         isOn(graph, GL_STENCIL_TEST, false) ||
         effective<StateAttribute>(graph, StateAttribute::BLENDEQUATION))

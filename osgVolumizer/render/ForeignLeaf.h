@@ -35,9 +35,6 @@ struct BoxInView
 BoxInView boxInView(const osg::BoundingBoxd& box, const osg::Matrixd& modelView,
                     const osg::Matrixd& projection);
 
-/// Whether what is drawn in a graph may change the depth buffer.
-bool writesDepth(const osgUtil::StateGraph* graph);
-
 /// Whether a drawable is known to draw with the state of its graph; others may set GL state
 /// themselves, as particle systems do.
 bool keepsState(const osg::Drawable& drawable);

@@ -1,6 +1,8 @@
 #include "GroupComposer.h"
 
 #include "../Error.h"
+#include "ContextRefusals.h"
+#include "LeafState.h"
 #include "Matrices.h"
 #include "ScreenAreas.h"
 
@@ -217,8 +219,10 @@ bool drawsAtOnce(const osg::Drawable& drawable)
 bool GroupComposer::canBeCaptured(const Region& region) const
 {
     if (region.surfaces.empty() || _volumes.size() != 1) return false;
+    if (isRefused(_contextId, Refusal::CAPTURED_SURFACES)) return false;
     const PreparedVolume& volume = _volumes.front();
     if (volume.sliced || volume.instance->bricks.size() != 1) return false;
+    if (!volume.instance->look->above.isUsual()) return false;
     const Blending blending = blendingOf(_surfaces[region.surfaces.front()].leaf->leaf()._parent);
     if (!blending.over) return false;
     return std::all_of(region.surfaces.begin(), region.surfaces.end(), [&](std::size_t s) {
@@ -352,11 +356,14 @@ void GroupComposer::addCopies(const std::vector<std::size_t>& surfaces, osg::Sta
 bool GroupComposer::isWorthSorting(const Region& region) const
 {
     if (region.surfaces.empty()) return false;
+    if (isRefused(_contextId, Refusal::RANKED_SURFACES)) return false;
     for (const PreparedVolume& volume : _volumes)
         if (volume.sliced) return false;
     std::size_t triangles = 0;
     for (std::size_t s : region.surfaces) {
         if (!leavesDepth(_surfaces[s])) return false;
+        // Fragments are counted by stencil values.
+        if (isOn(_surfaces[s].leaf->leaf()._parent, GL_STENCIL_TEST, false)) return false;
         triangles += _surfaces[s].mesh ? _surfaces[s].mesh->triangleCount() : UNKNOWN_TRIANGLES;
     }
     return triangles <= MAXIMUM_SORTED_TRIANGLES;
@@ -544,6 +551,8 @@ void GroupComposer::addVolume(PreparedVolume& volume, std::shared_ptr<const Volu
     osgUtil::StateGraph* graph = instance.leaf->_parent;
     const osg::ref_ptr<osg::StateSet> set = volumeStateSet(look->features);
     if (graph->getStateSet() != set) graph = graph->_parent->find_or_insert(set);
+    if (!look->above.depthTest.isUsual() && look->features.slotCount == 0)
+        graph = graph->find_or_insert(depthTestStateSet(look->above.depthTest));
     graph->addLeaf(leaf);
     leaves.push_back({depth, leaf.get()});
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Accumulation.h"
+#include "AccumulationLeaf.h"
 #include "DepthLayers.h"
 #include "ForeignLeaf.h"
 #include "MeshBuilder.h"
@@ -57,9 +57,11 @@ class GroupComposer
 {
 public:
     /// \param viewport x, y, width, height in pixels
-    GroupComposer(const MergeGroup& group, const glm::ivec4& viewport, Accumulation& accumulation,
-                  FrameCounts& counts)
-        : _group(group), _viewport(viewport), _accumulation(accumulation), _counts(counts)
+    /// \param contextId of the context that will draw
+    GroupComposer(const MergeGroup& group, const glm::ivec4& viewport, unsigned contextId,
+                  Accumulation& accumulation, FrameCounts& counts)
+        : _group(group), _viewport(viewport), _contextId(contextId), _accumulation(accumulation),
+          _counts(counts)
     {
     }
     void compose(std::vector<OrderedLeaf>& leaves);
@@ -147,6 +149,7 @@ private:
 
     const MergeGroup& _group;
     const glm::ivec4 _viewport;
+    const unsigned _contextId;
     Accumulation& _accumulation;
     FrameCounts& _counts;
     std::vector<PreparedVolume> _volumes;

@@ -1,5 +1,6 @@
 #include "Merger.h"
 
+#include "LeafState.h"
 #include "Matrices.h"
 #include "MergeGroups.h"
 #include "Paint.h"
@@ -136,6 +137,17 @@ bool isDepthWritten(const std::vector<osgUtil::RenderLeaf*>& leaves,
     });
 }
 
+// Whether stencil values matter to what is drawn between the ends.
+bool isStencilUsed(const std::vector<osgUtil::RenderLeaf*>& leaves,
+                   const std::unordered_set<const osgUtil::RenderLeaf*>& replaced,
+                   const core::DepthInterval& ends)
+{
+    return std::any_of(leaves.begin(), leaves.end(), [&](const osgUtil::RenderLeaf* leaf) {
+        const bool between = leaf->_depth >= ends.nearDepth && leaf->_depth <= ends.farDepth;
+        return (between || replaced.count(leaf)) && isOn(leaf->_parent, GL_STENCIL_TEST, false);
+    });
+}
+
 bool mayWriteDepth(const osgUtil::RenderLeaf* leaf)
 {
     return writesDepth(leaf->_parent) || !keepsState(*leaf->getDrawable());
@@ -201,6 +213,7 @@ Merger* Merger::of(osgUtil::RenderBin& innermost, osgUtil::CullVisitor& visitor)
     merger->_camera = visitor.getCurrentCamera();
     merger->_frameStamp = visitor.getFrameStamp();
     merger->_viewport = visitor.getViewport();
+    if (const osg::State* state = visitor.getState()) merger->_contextId = state->getContextID();
     bin.setSortCallback(merger);
     return merger;
 }
@@ -256,13 +269,14 @@ void Merger::merge(const osgUtil::RenderBin& bin, LeafList& leaves,
     const osg::ref_ptr<Accumulation> accumulation = makeAccumulation();
     std::vector<OrderedLeaf> made;
     for (const MergeGroup& group : groups.groups)
-        GroupComposer(group, viewport(), *accumulation, counts).compose(made);
+        GroupComposer(group, viewport(), _contextId, *accumulation, counts).compose(made);
     for (const VolumeInstance* volume : visible)
         for (const SelectedBrick& brick : volume->bricks)
             counts.bricksDrawn += brick.brickCount;
     if (!made.empty()) {
         const core::DepthInterval ends = endsOf(made);
         if (isDepthWritten(leaves, replaced, ends)) accumulation->keepDepth();
+        if (isStencilUsed(leaves, replaced, ends)) accumulation->useStencil();
         if (groups.surfaces.empty()) leaveOut(bin, leaves, visible, ends, *accumulation);
         addAccumulation(*accumulation, *visible.front()->leaf, viewport(), ends, made);
     }

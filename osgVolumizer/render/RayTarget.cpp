@@ -2,6 +2,7 @@
 
 #include "ContextResources.h"
 #include "ScreenPass.h"
+#include "TargetBuffers.h"
 #include "Uniforms.h"
 
 #include <osg/BlendEquation>
@@ -42,8 +43,12 @@ RayTarget::RayTarget(osg::State& state, ContextResources& resources,
     for (int i = 0; i < 4; ++i)
         glGetIntegerv(names[i], &_function[i]);
 
-    ensureTarget();
+    glGetBooleanv(GL_COLOR_WRITEMASK, _colorMask);
+    _made = ensureRays(_state, _resources.rays, std::max(_viewport.x + _viewport.z, 1),
+                       std::max(_viewport.y + _viewport.w, 1));
+    if (!_made) return;
     _gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, _resources.rays.framebuffer);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     const bool sums = _features.rayFunction == VolumeAppearance::AVERAGE ||
                       _features.rayFunction == VolumeAppearance::SUM;
     const bool highest = _features.rayFunction == VolumeAppearance::MAXIMUM;
@@ -61,31 +66,6 @@ RayTarget::RayTarget(osg::State& state, ContextResources& resources,
     glBlendFunc(GL_ONE, GL_ONE);
 }
 
-void RayTarget::ensureTarget()
-{
-    RayBuffers& rays = _resources.rays;
-    const int width = _viewport.x + _viewport.z, height = _viewport.y + _viewport.w;
-    if (rays.color && rays.width >= width && rays.height >= height) return;
-    rays.width = std::max(width, rays.width);
-    rays.height = std::max(height, rays.height);
-    rays.color = new osg::Texture2D;
-    rays.color->setTextureSize(rays.width, rays.height);
-    rays.color->setInternalFormat(GL_RGBA32F_ARB);
-    rays.color->setSourceFormat(GL_RGBA);
-    rays.color->setSourceType(GL_FLOAT);
-    rays.color->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
-    rays.color->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
-    rays.color->setResizeNonPowerOfTwoHint(false);
-    rays.color->setDataVariance(osg::Object::STATIC);
-    _state.setActiveTextureUnit(UNIT_RAYS);
-    rays.color->apply(_state);
-    _state.haveAppliedTextureAttribute(UNIT_RAYS, osg::StateAttribute::TEXTURE);
-    if (!rays.framebuffer) _gl.glGenFramebuffers(1, &rays.framebuffer);
-    _gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, rays.framebuffer);
-    _gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_TEXTURE_2D,
-                               rays.color->getTextureObject(_state.getContextID())->id(), 0);
-}
-
 void RayTarget::resolve(const VolumeLook& look)
 {
     _gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
@@ -93,6 +73,7 @@ void RayTarget::resolve(const VolumeLook& look)
     _gl.glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     glDisable(GL_DEPTH_TEST); // rays ended at the opaque scene already
+    glColorMask(_colorMask[0], _colorMask[1], _colorMask[2], _colorMask[3]);
     osg::ref_ptr<osg::Program>& resolving =
         _resources.rays.programs[{_features.rayFunction, _features.rgba}];
     if (!resolving) resolving = makeResolveProgram(_features);
@@ -121,6 +102,7 @@ RayTarget::~RayTarget()
                             static_cast<GLenum>(_function[2]), static_cast<GLenum>(_function[3]));
     setEnabled(GL_BLEND, _blend);
     setEnabled(GL_DEPTH_TEST, _depthTest);
+    glColorMask(_colorMask[0], _colorMask[1], _colorMask[2], _colorMask[3]);
     // The next leaf may share our state set, and then finds nothing to apply.
     if (_program) _state.applyAttribute(_program);
 }

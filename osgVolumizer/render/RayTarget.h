@@ -22,11 +22,11 @@ public:
     RayTarget(const RayTarget&) = delete;
     RayTarget& operator=(const RayTarget&) = delete;
 
+    /// False where the card has no memory for the target: then nothing may be drawn.
+    bool made() const { return _made; }
     void resolve(const VolumeLook& look);
 
 private:
-    void ensureTarget();
-
     osg::State& _state;
     osg::GLExtensions& _gl;
     ContextResources& _resources;
@@ -36,6 +36,8 @@ private:
     GLint _drawFramebuffer = 0, _readFramebuffer = 0;
     GLint _equation[2] = {}, _function[4] = {};
     GLboolean _blend, _depthTest;
+    GLboolean _colorMask[4] = {GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE};
+    bool _made = false;
 };
 
 } // namespace render

@@ -28,7 +28,7 @@ osg::ref_ptr<osg::StateSet> screenState(const std::string& fragmentShader, bool 
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
     set->setAttributeAndModes(program, FORCE_ON);
     set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, writeDepth), FORCE_ON);
-    for (GLenum mode : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_ALPHA_TEST})
+    for (GLenum mode : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_ALPHA_TEST, GL_SCISSOR_TEST})
         set->setMode(mode, FORCE_OFF);
     for (GLenum plane = 0; plane < 6; ++plane)
         set->setMode(GL_CLIP_PLANE0 + plane, FORCE_OFF);
@@ -63,6 +63,7 @@ osg::ref_ptr<osg::StateSet> clearState()
         osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
         set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE_ON);
         set->setAttribute(new osg::Stencil, FORCE_ON); // its write mask is all ones
+        set->setMode(GL_SCISSOR_TEST, FORCE_OFF);
         return set;
     });
 }

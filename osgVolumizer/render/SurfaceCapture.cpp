@@ -1,5 +1,7 @@
 #include "SurfaceCapture.h"
 
+#include "ContextRefusals.h"
+#include "ReportOnce.h"
 #include "ScreenPass.h"
 #include "SharedStateSets.h"
 #include "VolumeProgram.h"
@@ -128,14 +130,34 @@ osg::ref_ptr<osg::StateSet> CaptureLeaf::stateSet(const Settings& settings)
     return clearState();
 }
 
+// In the frame that finds that the card has no memory for slots, surfaces are drawn after the
+// volume.
+void CaptureLeaf::drawWithout(osg::State& state) const
+{
+    reportOnce({ErrorCode::NOT_SUPPORTED,
+                "the card has no memory for captured surfaces; those in volumes are sorted rank "
+                "by rank, which takes longer"});
+    refuse(state.getContextID(), Refusal::CAPTURED_SURFACES);
+    const bool begins = _settings.step == BEGIN_SLOT ||
+                        (_settings.step == BEGIN_REST && !_accumulation->hasPlainTarget());
+    if (begins)
+        glEnable(GL_RASTERIZER_DISCARD);
+    else
+        glDisable(GL_RASTERIZER_DISCARD);
+}
+
 void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     if (!_accumulation) return;
     osg::State& state = *renderInfo.getState();
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const std::shared_ptr<ContextResources> resources = contextResources(state);
-    const CaptureBuffers& buffers = _accumulation->captureBuffers(state, _settings.slotCount);
-    const GLuint target = resources->accumulation.framebuffer;
+    CaptureBuffers* made = _accumulation->captureBuffers(state, _settings.slotCount);
+    if (!made) {
+        drawWithout(state);
+        return;
+    }
+    const CaptureBuffers& buffers = *made;
     const int slot = _settings.slot;
     switch (_settings.step) {
     case BEGIN_SLOT:
@@ -154,7 +176,7 @@ void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
         state.applyTextureAttribute(UNIT_FIRST_LAYER, buffers.depths);
         state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, resources->accumulation.opaqueDepth);
         drawScreen(state, *resources, _settings.area);
-        bindFramebuffer(state, target);
+        _accumulation->bindTarget(state);
         break;
     case WRITE_DEPTH:
         state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.sorted);
@@ -169,7 +191,7 @@ void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
         break;
     case END_REST:
         gl.glEndConditionalRender();
-        bindFramebuffer(state, target);
+        _accumulation->bindTarget(state);
         break;
     }
     for (unsigned unit = UNIT_OPAQUE_DEPTH; unit <= UNIT_FIRST_LAYER; ++unit)

@@ -54,6 +54,8 @@ public:
     static osg::ref_ptr<osg::StateSet> stateSet(const Settings& settings);
 
 private:
+    void drawWithout(osg::State& state) const;
+
     osg::ref_ptr<Accumulation> _accumulation;
     Settings _settings;
 };

@@ -4,6 +4,7 @@
 #include "BrickCells.h"
 #include "BrickTextures.h"
 #include "ContextResources.h"
+#include "Framebuffer.h"
 #include "Matrices.h"
 #include "PixelRays.h"
 #include "RayTarget.h"
@@ -105,21 +106,31 @@ void setLook(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& 
     }
 }
 
+// For the shader of slabs; a volume whose range is one depth lies just before that.
+glm::vec2 depthRange(const DepthTest& test)
+{
+    if (test.zNear == test.zFar) return {static_cast<float>(test.zNear) - 1e-7f, 1e30f};
+    return glm::vec2(test.zNear, 1.0 / (test.zFar - test.zNear));
+}
+
 void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRays& rays,
                       const VolumeLook& look, const ContextResources& resources)
 {
     const ProgramFeatures& features = look.features;
     const AccumulationBuffers& buffers = resources.accumulation;
-    uniforms.set("opaqueDrawn", buffers.hasOpaqueDepth ? 1 : 0);
+    const DepthTest& test = look.above.depthTest;
+    const bool ends = buffers.hasOpaqueDepth && test.function != osg::Depth::ALWAYS;
+    uniforms.set("opaqueRule", !ends ? 0 : test.nearerPasses() ? 1 : 2);
+    uniforms.set("depthRange", depthRange(test));
     if (!buffers.opaqueDepth) return;
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
     if (features.layerDepth)
         state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.layerDepth.get());
-    if (features.ranked) {
+    if (features.ranked && buffers.layers.rankDepth) {
         state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.layers.sorted[0].get());
         state.applyTextureAttribute(UNIT_SORTED_NEAR, buffers.layers.sorted[1].get());
     }
-    if (features.slotCount > 0) {
+    if (features.slotCount > 0 && resources.capture.sorted) {
         state.applyTextureAttribute(UNIT_SORTED_FAR, resources.capture.sorted.get());
         state.applyTextureAttribute(UNIT_SORTED_NEAR, resources.capture.colors.get());
         uniforms.set("surfaceWeights", look.surfaceWeights);
@@ -216,6 +227,74 @@ void drawBatch(osg::RenderInfo& renderInfo, const ContextLimits& limits, const U
                    reinterpret_cast<const void*>(std::size_t(batch.firstIndex) * sizeof(unsigned)));
 }
 
+void drawMesh(osg::RenderInfo& renderInfo, ContextResources& resources, const Uniforms& uniforms,
+              const VolumeMesh& mesh, const VolumeLook& look)
+{
+    osg::State& state = *renderInfo.getState();
+    // Gathered values hide nothing, so they need no order, and no parts.
+    std::optional<RayTarget> target;
+    if (look.features.gathers())
+        target.emplace(state, resources, look.features, glm::ivec4(viewportOf(state)));
+    if (target && !target->made()) return;
+    {
+        const BoundMesh bound(state, *state.get<osg::GLExtensions>(), resources, mesh,
+                              static_cast<float>(look.step));
+        const auto drawBatches = [&]() {
+            for (const BrickBatch& batch : mesh.batches)
+                drawBatch(renderInfo, resources.limits, uniforms, look.features, batch);
+        };
+        if (look.scissors.empty()) {
+            drawBatches();
+        } else {
+            const ScissorScope scissor;
+            for (const glm::ivec4& rectangle : look.scissors)
+                if (scissor.set(rectangle)) drawBatches();
+        }
+    }
+    if (target) target->resolve(look);
+}
+
+// Takes the place of a program whose surfaces the card has no memory for: the volume is drawn
+// without them, which come after it. Found in the frame that asks for the memory; the next ones are
+// composed without.
+class Substitute
+{
+public:
+    Substitute(osg::State& state, const ContextResources& resources,
+               const ProgramFeatures& features)
+        : _state(state)
+    {
+        const bool captured = features.slotCount > 0 && !resources.capture.colors;
+        const bool ranked = features.ranked && !resources.accumulation.layers.rankDepth;
+        if (!captured && !ranked) return;
+        ProgramFeatures plain = features;
+        plain.slotCount = 0;
+        plain.ranked = false;
+        _before = state.getLastAppliedAttribute(osg::StateAttribute::PROGRAM);
+        _set = volumeStateSet(plain);
+        state.applyAttribute(_set->getAttribute(osg::StateAttribute::PROGRAM));
+        state.applyAttribute(_set->getAttribute(osg::StateAttribute::BLENDFUNC));
+        state.haveAppliedAttribute(osg::StateAttribute::BLENDFUNC);
+    }
+    Substitute(const Substitute&) = delete;
+    Substitute& operator=(const Substitute&) = delete;
+    ~Substitute()
+    {
+        if (_set && _before) _state.applyAttribute(_before);
+    }
+
+    /// Of the segments between ranks the first stands for all.
+    bool isDrawn(const VolumeLook& look) const
+    {
+        return !_set || !look.features.ranked || look.rank == 0;
+    }
+
+private:
+    osg::State& _state;
+    osg::ref_ptr<osg::StateSet> _set;
+    const osg::StateAttribute* _before = nullptr;
+};
+
 } // namespace
 
 VolumeDrawable::VolumeDrawable()
@@ -232,8 +311,12 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     const std::shared_ptr<ContextResources> resources = contextResources(state);
     const Status supported = resources->limits.check();
     reportOnce(supported);
+    if (!supported || !_mesh || !_look || _mesh->batches.empty()) return;
+    const AccumulationBuffers& buffers = resources->accumulation;
+    if (buffers.drawBuffers.empty() || buffers.drawBuffers.front() == GL_NONE) return;
+    const Substitute substitute(state, *resources, _look->features);
     const auto* program = state.getLastAppliedProgramObject();
-    if (!supported || !_mesh || !_look || _mesh->batches.empty() || !program) return;
+    if (!substitute.isDrawn(*_look) || !program) return;
     const glm::dmat4 toEye = toGlm(state.getModelViewMatrix());
     const glm::dmat4 projection = toGlm(state.getProjectionMatrix());
     const Result<PixelRays> rays =
@@ -243,32 +326,17 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
         return;
     }
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const FirstDrawBufferScope first(gl, buffers.drawBuffers);
     const Uniforms uniforms(gl, *program);
-    uniforms.set("frameToClip", projection * toEye);
+    // Meshes for captured surfaces are in device coordinates.
+    uniforms.set("frameToClip",
+                 _look->features.slotCount > 0 ? glm::dmat4(1.0) : projection * toEye);
     setLook(uniforms, *_look, *rays);
     if (_look->features.shading) setShading(uniforms, *_look, *rays, toEye, state);
     if (_look->features.opaqueDepth) setDepthTextures(state, uniforms, *rays, *_look, *resources);
     if (_look->table.texture) state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
     setPaints(renderInfo, resources->limits, uniforms, _look->paints, UNIT_FIRST_PAINT);
-    // Gathered values hide nothing, so they need no order, and no parts.
-    std::optional<RayTarget> target;
-    if (_look->features.gathers())
-        target.emplace(state, *resources, _look->features, glm::ivec4(viewportOf(state)));
-    {
-        const BoundMesh bound(state, gl, *resources, *_mesh, static_cast<float>(_look->step));
-        const auto drawBatches = [&]() {
-            for (const BrickBatch& batch : _mesh->batches)
-                drawBatch(renderInfo, resources->limits, uniforms, _look->features, batch);
-        };
-        if (_look->scissors.empty()) {
-            drawBatches();
-        } else {
-            const ScissorScope scissor;
-            for (const glm::ivec4& rectangle : _look->scissors)
-                if (scissor.set(rectangle)) drawBatches();
-        }
-    }
-    if (target) target->resolve(*_look);
+    drawMesh(renderInfo, *resources, uniforms, *_mesh, *_look);
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
     // OSG compares attributes by address: make it bind its own again whatever ours were.

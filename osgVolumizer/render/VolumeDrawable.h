@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LeafState.h"
 #include "Paint.h"
 #include "SceneLights.h"
 #include "TableTextures.h"
@@ -67,9 +68,10 @@ struct VolumeLook
     glm::vec4 material{0.0f};             ///< ambient, diffuse, specular, shininess
     glm::vec2 gradientDecode{1.0f, 0.0f}; ///< scale, offset: gradient texture -> texels per voxel
     std::vector<EyeLight> lights;         ///< of the stage; some may be off
-    glm::dmat3 frameToUnits{1.0};         ///< frame vector -> opacity units
-    glm::dvec3 center{0.0};               ///< frame; the middle of the volume
-    double referenceDepth = 0.0;          ///< eye units; depths of slabs are counted from here
+    StateAbove above;
+    glm::dmat3 frameToUnits{1.0};   ///< frame vector -> opacity units
+    glm::dvec3 center{0.0};         ///< frame; the middle of the volume
+    double referenceDepth = 0.0;    ///< eye units; depths of slabs are counted from here
     double step = 1.0;              ///< between samples or slices: depth, distance or frame units
     double voxelsPerSample = 1.0;   ///< along the view axis
     glm::dvec3 surfaceNormal{0.0};  ///< slices: frame units; along which `step` is counted

@@ -4,6 +4,7 @@
 #include "SharedStateSets.h"
 
 #include <osg/AlphaFunc>
+#include <osg/BlendEquation>
 #include <osg/BlendFunc>
 #include <osg/CullFace>
 #include <osg/Depth>
@@ -87,9 +88,10 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
         new osg::BlendFunc(osg::BlendFunc::ONE,
                            captured ? SOURCE1_COLOR : GLenum(GL_ONE_MINUS_SRC_ALPHA)),
         StateAttribute::ON);
+    set->setAttribute(new osg::BlendEquation(osg::BlendEquation::FUNC_ADD));
     set->setAttributeAndModes(
         new osg::Depth(captured ? osg::Depth::ALWAYS : osg::Depth::LEQUAL, 0.0, 1.0, false),
-        StateAttribute::ON);
+        StateAttribute::ON | StateAttribute::PROTECTED);
     // OSG's transparent bins drop fragments of alpha 0, which may still carry colour.
     set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f),
                               StateAttribute::OFF | StateAttribute::PROTECTED);
@@ -125,6 +127,15 @@ bool sampleCounting()
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
 {
     return sharedStateSet(features.key(), [&features]() { return makeStateSet(features); });
+}
+
+osg::ref_ptr<osg::StateSet> depthTestStateSet(const DepthTest& test)
+{
+    using osg::StateAttribute;
+    osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+    set->setAttributeAndModes(new osg::Depth(test.function, test.zNear, test.zFar, false),
+                              StateAttribute::ON | StateAttribute::PROTECTED);
+    return set;
 }
 
 osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "LeafState.h"
+
 #include "../VolumeAppearance.h"
 
 #include <osg/Program>
@@ -95,6 +97,8 @@ bool sampleCounting();
 /// The state that a volume with these features is drawn with: program, blending, depth test without
 /// writes, transparent bin. Shared by all volumes, views and contexts. Thread safe.
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features);
+/// Below that state: a depth test other than the usual one.
+osg::ref_ptr<osg::StateSet> depthTestStateSet(const DepthTest& test);
 /// Draws the layer of a volume that gathers(); depends on ray function and rgba only.
 osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features);
 

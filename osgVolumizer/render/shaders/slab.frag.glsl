@@ -23,7 +23,8 @@ uniform float stepsPerDepth;
 uniform float maximumSteps;
 #ifdef OPAQUE_DEPTH
 uniform sampler2D opaqueDepth;
-uniform bool opaqueDrawn; // else there is nothing to end at
+uniform int opaqueRule;   // 0: nothing to end at; 1: segments end there; 2: they begin there
+uniform vec2 depthRange;  // nearest window depth of the volume, and 1 over the length of its range
 uniform vec3 clipZOrigin, clipZDirection, clipWOrigin, clipWDirection; // times (dx, dy, 1)
 #endif
 #ifdef LAYER_DEPTH
@@ -52,12 +53,22 @@ float rayAt(float windowZ)
            (dot(clipZDirection, window) - z * dot(clipWDirection, window));
 }
 
+// Where the ray meets the opaque scene; far away where it does not. Depth ranges as of osg::Depth.
+float opaqueOnRay()
+{
+    float windowZ = texelFetch(opaqueDepth, ivec2(gl_FragCoord.xy), 0).r;
+    float z = (windowZ - depthRange.x) * depthRange.y;
+    return z < 1.0 ? rayAt(max(z, 0.0)) : 1e30;
+}
+
+#ifdef LAYER_DEPTH
 // Where the ray meets what left its depth in a buffer; far away where nothing did.
 float depthOnRay(sampler2D depths)
 {
     float windowZ = texelFetch(depths, ivec2(gl_FragCoord.xy), 0).r;
     return windowZ < 1.0 ? rayAt(windowZ) : 1e30;
 }
+#endif
 #endif
 
 #ifdef RANKED
@@ -396,7 +407,8 @@ void main()
     for (int i = 0; i < PLANES; ++i) clipToPlane(planes[i], origin, direction, tNear, tFar);
 #endif
 #ifdef OPAQUE_DEPTH
-    if (opaqueDrawn) tFar = min(tFar, depthOnRay(opaqueDepth));
+    if (opaqueRule == 1) tFar = min(tFar, opaqueOnRay());
+    if (opaqueRule == 2) tNear = max(tNear, opaqueOnRay());
 #endif
 #ifdef LAYER_DEPTH
     float tLayer = depthOnRay(layerDepth);

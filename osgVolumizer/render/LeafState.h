@@ -1,0 +1,71 @@
+#pragma once
+
+#include <osg/Depth>
+#include <osg/StateSet>
+#include <osgUtil/StateGraph>
+
+namespace osgVolumizer {
+namespace render {
+
+/// What OSG applies for a graph of state sets, from the root down.
+
+/// The attribute of a type: the last one on the way down that no override stops. Null where none is
+/// set.
+const osg::StateAttribute* effectiveAttribute(const osgUtil::StateGraph* graph,
+                                              osg::StateAttribute::Type type);
+template <class Attribute>
+const Attribute* effective(const osgUtil::StateGraph* graph, osg::StateAttribute::Type type)
+{
+    return static_cast<const Attribute*>(effectiveAttribute(graph, type));
+}
+
+/// Likewise for a mode.
+bool isOn(const osgUtil::StateGraph* graph, GLenum mode, bool byDefault);
+
+/// Whether the depth test is on, as OSG has it by default.
+inline bool isDepthTested(const osgUtil::StateGraph* graph)
+{
+    return isOn(graph, GL_DEPTH_TEST, true);
+}
+
+/// Whether what is drawn in a graph may change the depth buffer.
+bool writesDepth(const osgUtil::StateGraph* graph);
+
+/// Whether all channels of the first colour buffer are written.
+bool writesAllChannels(const osgUtil::StateGraph* graph);
+
+/// How fragments are tested against the depth of what was drawn before.
+struct DepthTest
+{
+    osg::Depth::Function function = osg::Depth::LEQUAL; ///< ALWAYS where there is no test
+    double zNear = 0.0, zFar = 1.0;                     ///< window depths of the clip planes
+
+    bool isUsual() const
+    {
+        return (function == osg::Depth::LEQUAL || function == osg::Depth::LESS) && zNear == 0.0 &&
+               zFar == 1.0;
+    }
+    /// Whether what lies nearer passes; if not, what lies farther.
+    bool nearerPasses() const
+    {
+        return (function == osg::Depth::LEQUAL || function == osg::Depth::LESS) == (zNear <= zFar);
+    }
+};
+
+/// The state that volumes take from above them, as other geometry does.
+struct StateAbove
+{
+    DepthTest depthTest;
+    bool stencilTested = false, allChannels = true;
+    bool blendOverridden = false; ///< what is above overrides the volumes' own blending
+
+    /// Whether it can make no difference which drawable leaves a fragment.
+    bool isUsual() const
+    {
+        return depthTest.isUsual() && !stencilTested && allChannels && !blendOverridden;
+    }
+};
+StateAbove stateAbove(const osgUtil::StateGraph* graph);
+
+} // namespace render
+} // namespace osgVolumizer
