@@ -3,6 +3,7 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -54,23 +55,82 @@ const Display& display()
     return instance;
 }
 
+// What a configuration of the display has; colours with 8 bits a channel, else nothing.
+bool formatOf(EGLDisplay display, EGLConfig config, SurfaceFormat& format)
+{
+    const auto get = [=](EGLint attribute) {
+        EGLint value = 0;
+        eglGetConfigAttrib(display, config, attribute, &value);
+        return value;
+    };
+    format = {get(EGL_DEPTH_SIZE), get(EGL_STENCIL_SIZE), get(EGL_SAMPLES)};
+    return get(EGL_RED_SIZE) == 8 && get(EGL_GREEN_SIZE) == 8 && get(EGL_BLUE_SIZE) == 8 &&
+           get(EGL_ALPHA_SIZE) == 8 && (get(EGL_SURFACE_TYPE) & EGL_PBUFFER_BIT) &&
+           (get(EGL_RENDERABLE_TYPE) & EGL_OPENGL_BIT);
+}
+
+std::vector<EGLConfig> allConfigurations()
+{
+    const Display& d = display();
+    EGLint count = 0;
+    if (d.problem || !eglGetConfigs(d.handle, nullptr, 0, &count)) return {};
+    std::vector<EGLConfig> configs(static_cast<std::size_t>(count));
+    eglGetConfigs(d.handle, configs.data(), count, &count);
+    return configs;
+}
+
+Status noContext(const std::string& why)
+{
+    return {ErrorCode::NOT_SUPPORTED, "No GL context: " + why + "."};
+}
+
 } // namespace
+
+std::vector<SurfaceFormat> OffscreenContext::surfaceFormats()
+{
+    std::vector<SurfaceFormat> formats;
+    SurfaceFormat format;
+    for (EGLConfig config : allConfigurations())
+        if (formatOf(display().handle, config, format) &&
+            std::find(formats.begin(), formats.end(), format) == formats.end())
+            formats.push_back(format);
+    return formats;
+}
+
+Result<std::unique_ptr<OffscreenContext>>
+OffscreenContext::createWithSurface(int width, int height, const SurfaceFormat& wanted)
+{
+    const Display& d = display();
+    if (d.problem) return noContext(d.problem);
+    if (!eglBindAPI(EGL_OPENGL_API)) return noContext("EGL has no desktop OpenGL");
+    SurfaceFormat format;
+    for (EGLConfig config : allConfigurations()) {
+        if (!formatOf(d.handle, config, format) || !(format == wanted)) continue;
+        const EGLint size[] = {EGL_WIDTH, width, EGL_HEIGHT, height, EGL_NONE};
+        const EGLSurface surface = eglCreatePbufferSurface(d.handle, config, size);
+        if (surface == EGL_NO_SURFACE) continue;
+        const EGLContext context = eglCreateContext(d.handle, config, EGL_NO_CONTEXT, nullptr);
+        if (context != EGL_NO_CONTEXT)
+            return std::unique_ptr<OffscreenContext>(
+                new OffscreenContext(d.handle, context, surface));
+        eglDestroySurface(d.handle, surface);
+    }
+    return noContext("EGL has no surface of the format");
+}
 
 Result<std::unique_ptr<OffscreenContext>> OffscreenContext::create(Profile profile,
                                                                    const OffscreenContext* shared)
 {
     const Display& d = display();
-    if (d.problem)
-        return Status(ErrorCode::NOT_SUPPORTED, std::string("No GL context: ") + d.problem + ".");
+    if (d.problem) return noContext(d.problem);
     // The bound API is per thread.
-    if (!eglBindAPI(EGL_OPENGL_API))
-        return Status(ErrorCode::NOT_SUPPORTED, "No GL context: EGL has no desktop OpenGL.");
+    if (!eglBindAPI(EGL_OPENGL_API)) return noContext("EGL has no desktop OpenGL");
 
     const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
     if (!eglChooseConfig(d.handle, wanted, &config, 1, &count) || count < 1)
-        return Status(ErrorCode::NOT_SUPPORTED, "No GL context: EGL has no OpenGL configuration.");
+        return noContext("EGL has no OpenGL configuration");
 
     std::vector<EGLint> attributes;
     if (profile == CORE)
@@ -80,9 +140,7 @@ Result<std::unique_ptr<OffscreenContext>> OffscreenContext::create(Profile profi
     attributes.push_back(EGL_NONE);
     const EGLContext context = eglCreateContext(
         d.handle, config, shared ? shared->_context : EGL_NO_CONTEXT, attributes.data());
-    if (context == EGL_NO_CONTEXT)
-        return Status(ErrorCode::NOT_SUPPORTED,
-                      "No GL context: EGL error " + std::to_string(eglGetError()) + ".");
+    if (context == EGL_NO_CONTEXT) return noContext("EGL error " + std::to_string(eglGetError()));
     return std::unique_ptr<OffscreenContext>(new OffscreenContext(d.handle, context));
 }
 
@@ -90,12 +148,14 @@ OffscreenContext::~OffscreenContext()
 {
     if (isCurrent()) release();
     eglDestroyContext(_display, _context);
+    if (_surface) eglDestroySurface(_display, _surface);
 }
 
 bool OffscreenContext::makeCurrent()
 {
     eglBindAPI(EGL_OPENGL_API);
-    return eglMakeCurrent(_display, EGL_NO_SURFACE, EGL_NO_SURFACE, _context) == EGL_TRUE;
+    const EGLSurface surface = _surface ? _surface : EGL_NO_SURFACE;
+    return eglMakeCurrent(_display, surface, surface, _context) == EGL_TRUE;
 }
 
 bool OffscreenContext::release()

@@ -6,6 +6,18 @@ namespace support {
 SurfacelessGraphicsContext::SurfacelessGraphicsContext(int width, int height,
                                                        OffscreenContext::Profile profile)
 {
+    initialize(width, height, OffscreenContext::create(profile));
+}
+
+SurfacelessGraphicsContext::SurfacelessGraphicsContext(int width, int height,
+                                                       const SurfaceFormat& format)
+{
+    initialize(width, height, OffscreenContext::createWithSurface(width, height, format));
+}
+
+void SurfacelessGraphicsContext::initialize(int width, int height,
+                                            Result<std::unique_ptr<OffscreenContext>> context)
+{
     _traits = new osg::GraphicsContext::Traits;
     _traits->x = _traits->y = 0;
     _traits->width = width;
@@ -13,7 +25,6 @@ SurfacelessGraphicsContext::SurfacelessGraphicsContext(int width, int height,
     _traits->doubleBuffer = false;
     _traits->windowDecoration = false;
 
-    auto context = OffscreenContext::create(profile);
     _status = context.status;
     _context = std::move(context.value);
 

@@ -10,14 +10,17 @@ namespace osgVolumizer {
 namespace support {
 
 /// An OffscreenContext as OSG wants it: give it to a camera of any osgViewer::Viewer or
-/// CompositeViewer, in any threading model. It has no default framebuffer, so its cameras render to
-/// FRAME_BUFFER_OBJECT. Each has a context id of its own.
+/// CompositeViewer, in any threading model. Unless it is asked for one it has no default
+/// framebuffer, so its cameras render to FRAME_BUFFER_OBJECT. Each has a context id of its own.
 class SurfacelessGraphicsContext : public osg::GraphicsContext
 {
 public:
     /// Width and height are those reported to cameras; nothing is allocated for them.
     SurfacelessGraphicsContext(int width, int height,
                                OffscreenContext::Profile profile = OffscreenContext::COMPATIBILITY);
+
+    /// One that has a default framebuffer of a format, as a window has.
+    SurfacelessGraphicsContext(int width, int height, const SurfaceFormat& format);
 
     /// Why the context is not valid().
     const Status& status() const { return _status; }
@@ -41,6 +44,8 @@ protected:
     ~SurfacelessGraphicsContext() override;
 
 private:
+    void initialize(int width, int height, Result<std::unique_ptr<OffscreenContext>> context);
+
     std::unique_ptr<OffscreenContext> _context;
     Status _status;
     bool _realized = false;
