@@ -31,6 +31,8 @@ void SurfacelessGraphicsContext::initialize(int width, int height,
     setState(new osg::State);
     getState()->setGraphicsContext(this);
     getState()->setContextID(osg::GraphicsContext::createNewContextID());
+    // OSG would take errors off, tell of them, and go on; they are for who reads pictures back.
+    getState()->setCheckForGLErrors(osg::State::NEVER_CHECK_GL_ERRORS);
 }
 
 SurfacelessGraphicsContext::~SurfacelessGraphicsContext()

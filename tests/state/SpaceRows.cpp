@@ -1,0 +1,49 @@
+// Where things are: clipping, viewports.
+
+#include "StateRow.h"
+
+#include <osg/ClipControl>
+#include <osg/ClipPlane>
+#include <osg/Viewport>
+#include <osg/ViewportIndexed>
+
+#ifndef GL_DEPTH_CLAMP
+#define GL_DEPTH_CLAMP 0x864F
+#endif
+
+namespace osgVolumizer {
+namespace test {
+
+namespace {
+
+using osg::ClipControl;
+
+void setClipPlane(osg::StateSet& set, unsigned value)
+{
+    set.setAttributeAndModes(new osg::ClipPlane(0, osg::Vec4d(1.0, 0.5, 0.0, 1.0)), value);
+}
+
+} // namespace
+
+std::vector<StateRow> spaceRows()
+{
+    return {
+        {"ClipPlane, ClipNode", setClipPlane, Effect::NONE_YET, true,
+         "A VolumeGeometry that ends where the plane is shows the same."},
+        {"Viewport", with<osg::Viewport>(8, 6, 30, 34), Effect::AS_ON_GEOMETRY, true,
+         "Drawn into the rectangle."},
+        {"ViewportIndexed", with<osg::ViewportIndexed>(0u, 8, 6, 30, 34), Effect::AS_ON_GEOMETRY,
+         true, "The same, of viewport 0."},
+        {"ClipControl: origin",
+         with<ClipControl>(ClipControl::UPPER_LEFT, ClipControl::NEGATIVE_ONE_TO_ONE),
+         Effect::AS_ON_GEOMETRY, true, "Upside down."},
+        {"ClipControl: depth mode",
+         with<ClipControl>(ClipControl::LOWER_LEFT, ClipControl::ZERO_TO_ONE),
+         Effect::AS_ON_GEOMETRY, true, "Depths of rays are mapped as those of geometry."},
+        {"`GL_DEPTH_CLAMP`", mode(GL_DEPTH_CLAMP), Effect::NONE, false,
+         "A volume is drawn between the near and the far plane."},
+    };
+}
+
+} // namespace test
+} // namespace osgVolumizer

@@ -1,0 +1,131 @@
+// Every state of OSG above a volume, against the same above geometry.
+
+#include "Stage.h"
+
+#include <support/Compare.h>
+#include <support/GLTest.h>
+
+#include <tuple>
+
+using namespace osgVolumizer;
+using namespace osgVolumizer::test;
+using support::FloatImage;
+
+namespace {
+
+std::string nameOf(Content content)
+{
+    static const char* const names[] = {"Slabs",   "Slices",      "Maximum",
+                                        "Surface", "BareSurface", "Overlap"};
+    return names[static_cast<int>(content)];
+}
+
+std::string nameOf(Target target)
+{
+    static const char* const names[] = {"Float", "Byte", "Samples"};
+    return names[static_cast<int>(target)];
+}
+
+/// Largest difference over all pixels, of depths as well.
+double difference(const FloatImage& a, const FloatImage& b)
+{
+    support::Mask all{a.width, a.height, {}};
+    all.set.assign(a.pixels.size(), 1);
+    double largest = support::compare(a, b, all).maximum;
+    if (a.depth.size() != b.depth.size()) return std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < a.depth.size(); ++i)
+        largest = std::max(largest, std::abs(double(a.depth[i]) - double(b.depth[i])));
+    return largest;
+}
+
+class States : public support::GLTest,
+               public ::testing::WithParamInterface<std::tuple<Content, Target>>
+{
+protected:
+    States() : _stage(std::get<0>(GetParam()), std::get<1>(GetParam())) {}
+
+    void SetUp() override
+    {
+        GLTest::SetUp();
+        _plain = _stage.volume(nullptr, 0).picture;
+        _plainGeometry = _stage.geometry(nullptr, 0, true).picture;
+        support::savePicture(_plain, "state_" + name());
+        support::savePicture(_plainGeometry, "state_" + name() + "_geometry");
+        // Else nothing below means anything.
+        ASSERT_LE(difference(_plain, _plainGeometry), tolerance());
+    }
+
+    static std::string name()
+    {
+        return nameOf(std::get<0>(GetParam())) + nameOf(std::get<1>(GetParam()));
+    }
+    static bool isShownBy(const StateRow& row)
+    {
+        const Target target = std::get<1>(GetParam());
+        return row.target == target || (row.target == Target::ANY && target != Target::SAMPLES);
+    }
+    // 8 bits are rounded once where all is composited, and once a layer of geometry.
+    static double tolerance()
+    {
+        return std::get<1>(GetParam()) == Target::ANY ? 2e-4 : 2.6 / 255.0;
+    }
+
+    /// Whether the state changes geometry.
+    bool check(const StateRow& row, unsigned value)
+    {
+        SCOPED_TRACE(row.state + (value & osg::StateAttribute::OVERRIDE ? ", overriding" : ""));
+        const bool honoured = row.effect == Effect::AS_ON_GEOMETRY;
+        const Stage::Shown expected = _stage.geometry(&row, value, honoured);
+        const Stage::Shown shown = _stage.volume(&row, value);
+        const double error = difference(shown.picture, expected.picture);
+        EXPECT_LE(error, tolerance());
+        EXPECT_EQ(shown.glError, expected.glError);
+        if (error > tolerance()) {
+            const std::string file = "state_" + name() + "_" + row.state;
+            support::savePicture(shown.picture, file);
+            support::savePicture(expected.picture, file + "_expected");
+        }
+        const Stage::Shown alone = _stage.geometry(&row, value, true);
+        checkNothingIsLeft();
+        return difference(alone.picture, _plainGeometry) > 0.05;
+    }
+
+    // What the frame before left in the context.
+    void checkNothingIsLeft()
+    {
+        const FloatImage geometry = _stage.geometry(nullptr, 0, true).picture;
+        const FloatImage volume = _stage.volume(nullptr, 0).picture;
+        // Some states OSG itself does not take back.
+        const bool takenBack = geometry.pixels == _plainGeometry.pixels;
+        const bool left = volume.pixels != _plain.pixels;
+        EXPECT_FALSE(takenBack && left) << "the next frame differs";
+        if (!takenBack || left) _stage.restart();
+    }
+
+    Stage _stage;
+    FloatImage _plain, _plainGeometry;
+};
+
+TEST_P(States, AreHonouredOrWithoutEffect)
+{
+    for (const StateRow& row : stateRows()) {
+        if (!isShownBy(row)) continue;
+        bool shows = false;
+        for (const unsigned value :
+             {unsigned(osg::StateAttribute::ON),
+              unsigned(osg::StateAttribute::ON) | unsigned(osg::StateAttribute::OVERRIDE)})
+            shows = check(row, value) || shows;
+        EXPECT_EQ(shows, row.shows) << row.state;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Above, States,
+    ::testing::Combine(::testing::Values(Content::SLABS, Content::SLICES, Content::MAXIMUM,
+                                         Content::SURFACE, Content::BARE_SURFACE, Content::OVERLAP),
+                       ::testing::Values(Target::ANY, Target::BYTE, Target::SAMPLES)),
+    [](const auto& tested) {
+        return nameOf(std::get<0>(tested.param)) + nameOf(std::get<1>(tested.param));
+    });
+
+} // namespace
