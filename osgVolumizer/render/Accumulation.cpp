@@ -43,6 +43,25 @@ void bindForCopy(osg::State& state, osg::Texture2D& texture)
     state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
+void reportMemory(const std::string& what)
+{
+    reportOnce({ErrorCode::NOT_SUPPORTED, "the card has no memory for " + what});
+}
+
+// The target, in the best format that there is memory for.
+bool makeTarget(osg::State& state, int bits, ContextResources& resources)
+{
+    AccumulationBuffers& buffers = resources.accumulation;
+    const std::vector<GLenum> formats = colorFormats(bits, resources.limits);
+    if (!ensureTarget(state, buffers, formats)) {
+        reportMemory("a target; volumes are drawn to the framebuffer, which may round more");
+        return false;
+    }
+    if (buffers.colorFormat != formats.front())
+        reportMemory("a target of as many bits as asked for; volumes are rounded to fewer");
+    return true;
+}
+
 // What decides which formats can be blitted to.
 std::uint64_t blitKey(const Framebuffer& f, GLbitfield what)
 {
@@ -129,18 +148,20 @@ void Accumulation::begin(osg::RenderInfo& renderInfo)
     const bool visible = _area[2] > 0 && _area[3] > 0;
     const bool hasDepth = visible && ensureOpaqueDepth(state, buffers, _area[0] + _area[2],
                                                        _area[1] + _area[3], format);
+    if (visible && !hasDepth)
+        reportMemory("a copy of the depth buffer; volumes do not end at opaque geometry in them");
     buffers.hasOpaqueDepth = hasDepth && !_depthCleared;
     if (hasDepth) copyOpaqueDepth(state, buffers);
     if (buffers.hasOpaqueDepth) countCopied("osgVolumizer depths copied", 1);
-    if (hasDepth && needsTarget() &&
-        ensureTarget(state, buffers, colorFormats(_settings.bits, resources->limits))) {
+    if (hasDepth && needsTarget() && makeTarget(state, _settings.bits, *resources)) {
         countCopied("osgVolumizer colors copied", 2); // and back
         _redirected = true;
         copyToTarget(state, buffers);
         shareOtherBuffers(state, *resources);
     }
     bindTarget(state);
-    state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
+    if (buffers.opaqueDepth)
+        state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
 }
 
 void Accumulation::bindTarget(osg::State& state) const

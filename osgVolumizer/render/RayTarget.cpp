@@ -1,6 +1,7 @@
 #include "RayTarget.h"
 
 #include "ContextResources.h"
+#include "ReportOnce.h"
 #include "ScreenPass.h"
 #include "TargetBuffers.h"
 #include "Uniforms.h"
@@ -46,7 +47,11 @@ RayTarget::RayTarget(osg::State& state, ContextResources& resources,
     glGetBooleanv(GL_COLOR_WRITEMASK, _colorMask);
     _made = ensureRays(_state, _resources.rays, std::max(_viewport.x + _viewport.z, 1),
                        std::max(_viewport.y + _viewport.w, 1));
-    if (!_made) return;
+    if (!_made) {
+        reportOnce({ErrorCode::NOT_SUPPORTED, "the card has no memory for gathered values; volumes "
+                                              "with such ray functions are not drawn"});
+        return;
+    }
     _gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, _resources.rays.framebuffer);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     const bool sums = _features.rayFunction == VolumeAppearance::AVERAGE ||
