@@ -45,16 +45,16 @@ private:
 PictureTarget::PictureTarget(osg::Camera& camera, int width, int height, Format format)
     : _width(width), _height(height)
 {
-    const bool floats = format != BYTE, stencil = format != FLOAT32;
+    const bool floats = format == FLOAT32;
     _color = makeTexture(width, height, floats ? GL_RGBA32F_ARB : GL_RGBA8, GL_RGBA,
                          floats ? GL_FLOAT : GL_UNSIGNED_BYTE);
-    _depth = makeTexture(width, height, stencil ? GL_DEPTH24_STENCIL8_EXT : GL_DEPTH_COMPONENT32F,
-                         stencil ? GL_DEPTH_STENCIL_EXT : GL_DEPTH_COMPONENT,
-                         stencil ? GL_UNSIGNED_INT_24_8_EXT : GL_FLOAT);
+    _depth = makeTexture(width, height, floats ? GL_DEPTH_COMPONENT32F : GL_DEPTH24_STENCIL8_EXT,
+                         floats ? GL_DEPTH_COMPONENT : GL_DEPTH_STENCIL_EXT,
+                         floats ? GL_FLOAT : GL_UNSIGNED_INT_24_8_EXT);
     camera.setViewport(0, 0, width, height);
     camera.setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
     camera.attach(osg::Camera::COLOR_BUFFER0, _color.get());
-    camera.attach(stencil ? osg::Camera::PACKED_DEPTH_STENCIL_BUFFER : osg::Camera::DEPTH_BUFFER,
+    camera.attach(floats ? osg::Camera::DEPTH_BUFFER : osg::Camera::PACKED_DEPTH_STENCIL_BUFFER,
                   _depth.get());
     camera.setFinalDrawCallback(new ReadBack(this));
 }

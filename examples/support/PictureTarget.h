@@ -18,13 +18,12 @@ class PictureTarget : public osg::Referenced
 public:
     enum Format
     {
-        FLOAT32,         ///< RGBA32F: nothing is clamped or rounded
-        BYTE,            ///< RGBA8, as windows have
-        FLOAT32_STENCIL, ///< RGBA32F
+        FLOAT32, ///< RGBA32F: nothing is clamped or rounded
+        BYTE     ///< RGBA8, as windows have
     };
 
-    /// Sets viewport, render target and callback of `camera`; depth has 32 bit float values for
-    /// FLOAT32, else 24 bits and a stencil.
+    /// Sets viewport, render target and callback of `camera`; depth has 32 bit float values, or 24
+    /// bit with stencil for BYTE.
     PictureTarget(osg::Camera& camera, int width, int height, Format format = FLOAT32);
 
     /// Asks for the picture of the n-th frame drawn from now on, n >= 1.

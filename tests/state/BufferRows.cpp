@@ -26,9 +26,8 @@ void bindBuffer(osg::StateSet& set, unsigned value)
 std::vector<StateRow> bufferRows()
 {
     return {
-        {"UniformBufferBinding",
-         bindBuffer<osg::UniformBufferBinding, osg::UniformBufferObject>, Effect::NONE, false,
-         OWN_BUFFERS},
+        {"UniformBufferBinding", bindBuffer<osg::UniformBufferBinding, osg::UniformBufferObject>,
+         Effect::NONE, false, OWN_BUFFERS},
         {"ShaderStorageBufferBinding",
          bindBuffer<osg::ShaderStorageBufferBinding, osg::ShaderStorageBufferObject>, Effect::NONE,
          false, OWN_BUFFERS},

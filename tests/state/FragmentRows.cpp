@@ -113,6 +113,7 @@ std::vector<StateRow> fragmentRows()
         {"ScissorIndexed",
          [](StateSet& set, unsigned value) {
              set.setAttributeAndModes(new osg::ScissorIndexed(0, 0.0f, 20.0f, 26.0f, 20.0f), value);
+             set.setMode(GL_SCISSOR_TEST, value);
          },
          Effect::AS_ON_GEOMETRY, true, "The same, of viewport 0."},
     };

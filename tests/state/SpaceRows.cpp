@@ -30,9 +30,9 @@ std::vector<StateRow> spaceRows()
     return {
         {"ClipPlane, ClipNode", setClipPlane, Effect::NONE_YET, true,
          "A VolumeGeometry that ends where the plane is shows the same."},
-        {"Viewport", with<osg::Viewport>(8, 6, 30, 34), Effect::AS_ON_GEOMETRY, true,
+        {"Viewport", with<osg::Viewport>(8, 6, 32, 34), Effect::AS_ON_GEOMETRY, true,
          "Drawn into the rectangle."},
-        {"ViewportIndexed", with<osg::ViewportIndexed>(0u, 8, 6, 30, 34), Effect::AS_ON_GEOMETRY,
+        {"ViewportIndexed", with<osg::ViewportIndexed>(0u, 8, 6, 32, 34), Effect::AS_ON_GEOMETRY,
          true, "The same, of viewport 0."},
         {"ClipControl: origin",
          with<ClipControl>(ClipControl::UPPER_LEFT, ClipControl::NEGATIVE_ONE_TO_ONE),

@@ -17,7 +17,6 @@ namespace test {
 namespace {
 
 using support::FloatImage;
-using support::PictureTarget;
 using support::RenderOptions;
 
 // Edges of all that is drawn lie between pixel centres.
@@ -28,10 +27,11 @@ constexpr float WIDTH = 24.0f, DEPTH = 16.0f, UP = 2.0f;
 osg::ref_ptr<osg::Geometry> rectangle(const osg::Vec2& low, const osg::Vec2& high, float z,
                                       const osg::Vec4& color, bool translucent = false)
 {
-    const osg::ref_ptr<osg::Geometry> quad =
-        support::makeQuad({osg::Vec3(low.x(), low.y(), z), {high.x(), low.y(), z},
-                           {high.x(), high.y(), z}, {low.x(), high.y(), z}},
-                          color, translucent);
+    const osg::ref_ptr<osg::Geometry> quad = support::makeQuad({osg::Vec3(low.x(), low.y(), z),
+                                                                {high.x(), low.y(), z},
+                                                                {high.x(), high.y(), z},
+                                                                {low.x(), high.y(), z}},
+                                                               color, translucent);
     osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array(1);
     (*normals)[0] = osg::Vec3(0.0f, 0.0f, 1.0f);
     quad->setNormalArray(normals, osg::Array::BIND_OVERALL);
@@ -101,46 +101,76 @@ osg::ref_ptr<osg::Group> afterwards()
     return group;
 }
 
-osg::ref_ptr<osg::Geometry> layer(float halfWidth, float z, const osg::Vec4& color)
+/// The two colours of a volume: of its lower left part, and of the rest.
+struct Colors
 {
-    return rectangle({-halfWidth, UP - halfWidth}, {halfWidth, UP + halfWidth}, z, color, true);
-}
+    osg::Vec4 corner, rest;
+};
+
+// Where one begins, in the world; never a pixel's centre, whatever the viewport.
+constexpr float SPLIT_X = -1.0f, SPLIT_Y = UP - 1.0f;
 
 osg::ref_ptr<osg::Node> box(VolumeAppearance::RayFunction function,
-                               VolumeAppearance::Technique technique, const glm::dvec4& color,
-                               float z)
+                            VolumeAppearance::Technique technique, const Colors& colors, float z)
 {
-    // Values that are none of [0, 1], in a range that is not: what is gathered must not be clamped.
-    const auto voxels =
-        makeVoxels(glm::ivec3(int(WIDTH) + 1, int(WIDTH) + 1, int(DEPTH) + 1),
-                   [](const glm::dvec3&) { return 30.0; });
+    // Values that are none of [0, 1]: what is gathered must not be clamped.
+    const auto voxels = makeVoxels(glm::ivec3(13, 13, 9), [](const glm::dvec3& p) {
+        return p.x < 5.5 && p.y < 5.5 ? 10.0 : 30.0;
+    });
     voxels->setRange(osg::Vec2d(0.0, 40.0));
+    voxels->setSpacing(osg::Vec3d(2.0, 2.0, 2.0));
     const osg::ref_ptr<VolumeAppearance> appearance = makeVolume(voxels);
     appearance->setRayFunction(function);
     appearance->setTechnique(technique);
-    appearance->setLookupTable(makeTable({{0.0, {0.0, 0.0, 0.0, 0.0}}, {0.75, color}, {1.0, color}}));
+    appearance->setInterpolation(VolumeAppearance::NEAREST);
+    const auto straight = [](const osg::Vec4& c) { return glm::dvec4(c.r(), c.g(), c.b(), c.a()); };
+    const glm::dvec4 corner = straight(colors.corner), rest = straight(colors.rest);
+    appearance->setLookupTable(makeTable({{0.0, corner}, {0.4, corner}, {0.6, rest}, {1.0, rest}}));
     osg::ref_ptr<osg::MatrixTransform> placed = new osg::MatrixTransform(
         osg::Matrix::translate(-0.5 * WIDTH, UP - 0.5 * WIDTH, z - 0.5 * DEPTH));
     placed->addChild(appearance);
     return placed;
 }
 
-RenderOptions view(Target target)
+RenderOptions view()
 {
     RenderOptions options;
     options.size(Stage::SIZE, Stage::SIZE);
     options.projection = osg::Matrixd::ortho(-24, 24, -24, 24, 1.0, 201.0);
     options.lookAt({0, 0, 100}, {0, 0, 0}, {0, 1, 0});
-    options.format = target == Target::ANY ? PictureTarget::FLOAT32_STENCIL : PictureTarget::BYTE;
     options.background = osg::Vec4(0.1f, 0.1f, 0.2f, 0.5f);
-    options.depth = target != Target::SAMPLES; // whose depth has no texture
     options.computeNearFar = false;
     return options;
 }
 
-osg::Vec4 surfaceColor()
+FramebufferFormat formatOf(Target target)
 {
-    return osg::Vec4(0.2f, 0.9f, 0.3f, 0.4f);
+    FramebufferFormat format;
+    if (target != Target::ANY) format.colors = {GL_RGBA8};
+    if (target == Target::SAMPLES) format.samples = 4;
+    return format;
+}
+
+// What looks like a box, or a layer of it.
+void addLayer(osg::Group& group, float z, const Colors& colors)
+{
+    const float low = -0.5f * WIDTH, high = 0.5f * WIDTH, bottom = UP + low, top = UP + high;
+    group.addChild(rectangle({low, bottom}, {SPLIT_X, SPLIT_Y}, z, colors.corner, true));
+    group.addChild(rectangle({SPLIT_X, bottom}, {high, SPLIT_Y}, z, colors.rest, true));
+    group.addChild(rectangle({low, SPLIT_Y}, {high, top}, z, colors.rest, true));
+}
+
+osg::Vec4 straightColor(const FloatImage& premultiplied, int x, int y)
+{
+    if (premultiplied.empty()) return osg::Vec4(1.0f, 1.0f, 1.0f, 1.0f);
+    const glm::vec4 c = premultiplied.at(x, y);
+    return osg::Vec4(c.r / c.a, c.g / c.a, c.b / c.a, c.a);
+}
+
+// Of half the depth.
+osg::Vec4 halved(const osg::Vec4& color)
+{
+    return osg::Vec4(color.r(), color.g(), color.b(), 1.0f - std::sqrt(1.0f - color.a()));
 }
 
 } // namespace
@@ -150,7 +180,7 @@ struct Stage::Version
     osg::ref_ptr<osg::Group> root = new osg::Group;
     osg::ref_ptr<osg::Group> volumes = new osg::Group;  ///< below the state, if it concerns them
     osg::ref_ptr<osg::Group> surfaces = new osg::Group; ///< likewise
-    std::unique_ptr<support::SceneRenderer> renderer;
+    std::unique_ptr<FramebufferRenderer> renderer;
 
     Version()
     {
@@ -172,12 +202,6 @@ struct Stage::Version
 Stage::Stage(Content content, Target target)
     : _content(content), _target(target), _volume(new Version), _geometry(new Version)
 {
-    // What the volume itself looks like: premultiplied, over nothing.
-    RenderOptions options = view(Target::ANY);
-    options.background = osg::Vec4();
-    const FloatImage alone = support::renderScene(volumes(), options);
-    const glm::vec4 seen = alone.empty() ? glm::vec4(1.0f) : alone.at(SIZE / 2, SIZE / 2);
-    _color = osg::Vec4(seen.r / seen.a, seen.g / seen.a, seen.b / seen.a, seen.a);
     _volume->volumes->addChild(volumes());
     makeMeshes();
 }
@@ -186,52 +210,48 @@ Stage::~Stage() = default;
 
 osg::ref_ptr<osg::Group> Stage::volumes() const
 {
-    const glm::dvec4 yellow(0.9, 0.8, 0.2, 0.05), violet(0.5, 0.2, 0.9, 0.07);
+    const float opacity = _content == Content::MAXIMUM   ? 0.6f
+                          : _content == Content::OVERLAP ? 0.018f
+                                                         : 0.04f;
+    const Colors yellow = {{0.9f, 0.8f, 0.2f, opacity}, {0.9f, 0.5f, 0.1f, 0.8f * opacity}};
+    const Colors violet = {{0.5f, 0.2f, 0.9f, opacity}, {0.2f, 0.3f, 0.9f, opacity}};
     const auto technique =
         _content == Content::SLICES ? VolumeAppearance::SLICES : VolumeAppearance::SLABS;
+    const auto function =
+        _content == Content::MAXIMUM ? VolumeAppearance::MAXIMUM : VolumeAppearance::COMPOSITE;
     osg::ref_ptr<osg::Group> group = new osg::Group;
-    if (_content == Content::MAXIMUM)
-        group->addChild(box(VolumeAppearance::MAXIMUM, technique, {0.9, 0.8, 0.2, 0.6}, 0.0f));
-    else
-        group->addChild(box(VolumeAppearance::COMPOSITE, technique, yellow, 0.0f));
-    if (_content == Content::OVERLAP)
-        group->addChild(box(VolumeAppearance::COMPOSITE, technique, violet, 6.0f));
+    group->addChild(box(function, technique, yellow, 0.0f));
+    if (_content == Content::OVERLAP) group->addChild(box(function, technique, violet, 6.0f));
     return group;
 }
 
 void Stage::makeMeshes()
 {
-    const float half = 0.5f * WIDTH;
+    // What the volume itself looks like, over nothing.
+    RenderOptions options = view();
+    options.background = osg::Vec4();
+    const FloatImage alone = support::renderScene(volumes(), options);
+    const Colors colors = {straightColor(alone, 15, 17), straightColor(alone, 30, 30)};
     if (_content != Content::SURFACE && _content != Content::BARE_SURFACE) {
-        _geometry->volumes->addChild(layer(half, 0.0f, _color));
+        addLayer(*_geometry->volumes, 0.0f, colors);
         return;
     }
     for (Version* version : {_volume.get(), _geometry.get()})
-        version->surfaces->addChild(layer(8.0f, 0.0f, surfaceColor()));
-    const float alpha = 1.0f - std::sqrt(1.0f - _color.a());
+        version->surfaces->addChild(rectangle({-8.0f, UP - 8.0f}, {8.0f, UP + 8.0f}, 0.0f,
+                                              osg::Vec4(0.2f, 0.9f, 0.3f, 0.4f), true));
     for (float z : {-4.0f, 4.0f})
-        _geometry->volumes->addChild(
-            layer(half, z, osg::Vec4(_color.r(), _color.g(), _color.b(), alpha)));
+        addLayer(*_geometry->volumes, z, {halved(colors.corner), halved(colors.rest)});
 }
 
-Stage::Shown Stage::show(std::unique_ptr<Version>& version)
+FramebufferContents Stage::show(std::unique_ptr<Version>& version)
 {
-    if (!version->renderer) {
+    if (!version->renderer)
         version->renderer =
-            std::make_unique<support::SceneRenderer>(version->root, view(_target));
-        if (_target == Target::SAMPLES) // before the first frame makes the framebuffer
-            for (auto& attachment : version->renderer->viewer().getCamera()->getBufferAttachmentMap())
-                attachment.second._multisampleSamples = 4;
-    }
-    Shown shown;
-    shown.picture = version->renderer->render();
-    shown.glError = version->renderer->glError();
-    // It is remembered.
-    if (shown.glError) version->renderer.reset();
-    return shown;
+            std::make_unique<FramebufferRenderer>(version->root, view(), formatOf(_target));
+    return version->renderer->render();
 }
 
-Stage::Shown Stage::volume(const StateRow* row, unsigned value)
+FramebufferContents Stage::volume(const StateRow* row, unsigned value)
 {
     osg::ref_ptr<osg::StateSet> set;
     if (row) row->set(*(set = new osg::StateSet), value);
@@ -240,12 +260,14 @@ Stage::Shown Stage::volume(const StateRow* row, unsigned value)
     return show(_volume);
 }
 
-Stage::Shown Stage::geometry(const StateRow* row, unsigned value, bool concernsVolumes)
+FramebufferContents Stage::geometry(const StateRow* row, unsigned value, bool concernsVolumes)
 {
     osg::ref_ptr<osg::StateSet> set;
     if (row) row->set(*(set = new osg::StateSet), value);
     _geometry->volumes->setStateSet(concernsVolumes ? set.get() : nullptr);
-    _geometry->surfaces->setStateSet(_content == Content::SURFACE ? set.get() : nullptr);
+    // What is merged with volumes has one sample, as they do.
+    const bool concernsSurfaces = _content == Content::SURFACE && _target != Target::SAMPLES;
+    _geometry->surfaces->setStateSet(concernsSurfaces ? set.get() : nullptr);
     return show(_geometry);
 }
 

@@ -1,8 +1,7 @@
 #pragma once
 
+#include "Framebuffer.h"
 #include "StateRow.h"
-
-#include <support/SceneRenderer.h>
 
 #include <osg/Group>
 
@@ -23,9 +22,10 @@ enum class Content
 };
 
 /// One scene in two versions: with volumes, and with translucent geometry that looks the same.
-/// Rays are parallel and volumes uniform, so that flat geometry can. Before both opaque geometry is
-/// drawn, behind and in front, and the stencil of the right half set to 1; after both, geometry in
-/// OSG's default state, and some that makes pixels blue where the stencil is 1.
+/// Rays are parallel and volumes have two colours, in columns, so that flat geometry can. Before
+/// both opaque geometry is drawn, behind and in front, and the stencil of the right half set to 1;
+/// after both, geometry in OSG's default state, and some that makes pixels blue where the stencil
+/// is 1.
 class Stage
 {
 public:
@@ -34,17 +34,11 @@ public:
     Stage(Content content, Target target);
     ~Stage();
 
-    /// What one version shows, with depth, and GL's complaint.
-    struct Shown
-    {
-        support::FloatImage picture;
-        unsigned glError = 0;
-    };
     /// Under a row's state, or none for null.
-    Shown volume(const StateRow* row, unsigned value);
+    FramebufferContents volume(const StateRow* row, unsigned value);
     /// What the volume has to look like where the state does, and does not, concern volumes; it
     /// always concerns surfaces that it is above.
-    Shown geometry(const StateRow* row, unsigned value, bool concernsVolumes);
+    FramebufferContents geometry(const StateRow* row, unsigned value, bool concernsVolumes);
     /// Forgets what the contexts were left with.
     void restart();
 
@@ -53,12 +47,11 @@ private:
 
     void makeMeshes();
     osg::ref_ptr<osg::Group> volumes() const;
-    Shown show(std::unique_ptr<Version>& version);
+    FramebufferContents show(std::unique_ptr<Version>& version);
 
     Content _content;
     Target _target;
     std::unique_ptr<Version> _volume, _geometry;
-    osg::Vec4 _color; ///< of the volume, straight
 };
 
 } // namespace test
