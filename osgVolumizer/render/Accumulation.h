@@ -49,6 +49,9 @@ public:
 
     /// Before the frame is drawn: there has to be a target, whatever the framebuffer has.
     void requireTarget() { _targetRequired = true; }
+    /// Before the frame is drawn: a framebuffer that can be drawn to as it is is, whatever its
+    /// bits.
+    void keepFramebuffer() { _settings.bits = 8; }
     /// Before the frame is drawn: what surfaces leave in the target's depth is for the framebuffer.
     void keepDepth() { _depthKept = true; }
     bool isDepthKept() const { return _depthKept; }

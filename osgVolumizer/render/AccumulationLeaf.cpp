@@ -1,7 +1,9 @@
 #include "AccumulationLeaf.h"
 
+#include "ForeignState.h"
 #include "ScreenPass.h"
 #include "SharedStateSets.h"
+#include "Uniforms.h"
 #include "VolumeProgram.h"
 
 #include <osgUtil/StateGraph>
@@ -16,8 +18,10 @@ osg::ref_ptr<osg::StateSet> depthStateSet()
 {
     return sharedStateSet(SharedState::DEPTH, []() {
         osg::ref_ptr<osg::StateSet> set = screenState("depth.frag.glsl", true);
-        set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
-        set->addUniform(new osg::Uniform("targetDepth", int(UNIT_LAYER_DEPTH)));
+        set->addUniform(
+            new osg::Uniform(uniformName("opaqueDepth").c_str(), int(UNIT_OPAQUE_DEPTH)));
+        set->addUniform(
+            new osg::Uniform(uniformName("targetDepth").c_str(), int(UNIT_LAYER_DEPTH)));
         return set;
     });
 }
@@ -50,6 +54,7 @@ void AccumulationLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
         _accumulation->endLayer(renderInfo);
         break;
     }
+    reapplyInNextFrame(*renderInfo.getState());
 }
 
 osgUtil::RenderLeaf* accumulationLeaf(Accumulation& accumulation, AccumulationLeaf::Step step,

@@ -1,9 +1,11 @@
 #include "DepthLayers.h"
 
 #include "ContextRefusals.h"
+#include "ForeignState.h"
 #include "ReportOnce.h"
 #include "ScreenPass.h"
 #include "SharedStateSets.h"
+#include "Uniforms.h"
 #include "VolumeProgram.h"
 
 #include <osg/ColorMask>
@@ -23,11 +25,11 @@ osg::ref_ptr<osg::StateSet> layerScreenState(const char* fragment, bool writeDep
 {
     osg::ref_ptr<osg::StateSet> set = screenState(fragment, writeDepth);
     for (int k = 0; k < LayerLeaf::LAYER_COUNT; ++k)
-        set->addUniform(
-            new osg::Uniform(("layer" + std::to_string(k)).c_str(), int(UNIT_FIRST_LAYER) + k));
-    set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
-    set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
-    set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
+        set->addUniform(new osg::Uniform(uniformName("layer" + std::to_string(k)).c_str(),
+                                         int(UNIT_FIRST_LAYER) + k));
+    set->addUniform(new osg::Uniform(uniformName("opaqueDepth").c_str(), int(UNIT_OPAQUE_DEPTH)));
+    set->addUniform(new osg::Uniform(uniformName("sortedFar").c_str(), int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform(uniformName("sortedNear").c_str(), int(UNIT_SORTED_NEAR)));
     return set;
 }
 
@@ -131,6 +133,7 @@ void LayerLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
     case DEPTH:
         break;
     }
+    reapplyInNextFrame(state);
     for (unsigned unit = UNIT_OPAQUE_DEPTH; unit < UNIT_FIRST_LAYER + LAYER_COUNT; ++unit)
         state.haveAppliedTextureAttribute(unit, StateAttribute::TEXTURE);
 }

@@ -1,6 +1,7 @@
 #include "ForeignLeaf.h"
 
 #include "LeafState.h"
+#include "Matrices.h"
 
 #include <osg/BlendFunc>
 #include <osg/ColorMask>
@@ -9,6 +10,7 @@
 #include <osgUtil/StateGraph>
 
 #include <glm/common.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +59,9 @@ Blending blendingOf(const osgUtil::StateGraph* graph)
     if (!writesAllChannels(graph)) return {};
     if (!function || !isOn(graph, GL_BLEND, false) || isOn(graph, GL_COLOR_LOGIC_OP, false) ||
         isOn(graph, GL_STENCIL_TEST, false) ||
-        effective<StateAttribute>(graph, StateAttribute::BLENDEQUATION))
+        effective<StateAttribute>(graph, StateAttribute::BLENDEQUATION) ||
+        effective<StateAttribute>(graph,
+                                  StateAttribute::Type(StateAttribute::CAPABILITY + GL_BLEND)))
         return {};
     const auto isWeight = [](GLenum f) { return f == BlendFunc::SRC_ALPHA || f == BlendFunc::ONE; };
     Blending blending;
@@ -109,14 +113,16 @@ std::optional<ForeignLeaf> ForeignLeaf::examine(osgUtil::RenderLeaf& leaf,
 {
     if (!leaf._modelview || !leaf._projection || !leaf.getDrawable()) return std::nullopt;
     const osg::BoundingBox& bounds = leaf.getDrawable()->getBoundingBox();
-    if (!bounds.valid() || !sameRays(*leaf._projection, projection)) return std::nullopt;
+    if (!bounds.valid() || !sameRays(usualProjection(leaf), projection)) return std::nullopt;
+    // Who is drawn elsewhere cannot be where it seems.
+    if (effectiveAttribute(leaf._parent, StateAttribute::VIEWPORTINDEXED)) return std::nullopt;
     // Depth that grows towards the eye orders nothing of ours.
     const osg::Depth* test = effectiveDepth(leaf._parent);
     if (test &&
         (test->getFunction() == osg::Depth::GREATER || test->getFunction() == osg::Depth::GEQUAL))
         return std::nullopt;
     ForeignLeaf result(leaf);
-    result._view = boxInView(bounds, *leaf._modelview, *leaf._projection);
+    result._view = boxInView(bounds, *leaf._modelview, usualProjection(leaf));
     core::DepthInterval& depth = result._view.depth;
     // Bounds are rounded to float: what is flat and parallel to the view still has a range.
     const double slack = 1e-6 * std::max(std::abs(depth.nearDepth), std::abs(depth.farDepth)) +
@@ -139,16 +145,18 @@ osgUtil::RenderLeaf* ForeignLeaf::copy(osg::StateSet& state) const
 osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, bool layer,
                                         osg::Drawable* drawable) const
 {
-    const osg::Matrixd& p = *_leaf->_projection;
+    const osg::Matrixd p = usualProjection(*_leaf);
     const double zNear =
         std::isfinite(interval.nearDepth) ? std::max(-1.0, deviceZ(p, interval.nearDepth)) : -1.0;
     const double zFar =
         std::isfinite(interval.farDepth) ? std::min(1.0, deviceZ(p, interval.farDepth)) : 1.0;
     if (!(zNear < zFar)) return nullptr;
-    osg::ref_ptr<osg::RefMatrix> projection = new osg::RefMatrix(p);
     const double scale = 2.0 / (zFar - zNear), offset = -(zFar + zNear) / (zFar - zNear);
+    osg::Matrixd cut = p;
     for (int row = 0; row < 4; ++row)
-        (*projection)(row, 2) = scale * p(row, 2) + offset * p(row, 3);
+        cut(row, 2) = scale * p(row, 2) + offset * p(row, 3);
+    const glm::dmat4 fromUsual = glm::inverse(toUsualClip(_leaf->_parent));
+    osg::ref_ptr<osg::RefMatrix> projection = new osg::RefMatrix(toOsg(fromUsual * toGlm(cut)));
 
     const osg::Depth* depth = effectiveDepth(_leaf->_parent);
     // Segments are split at true depths, whatever range the leaf draws to.

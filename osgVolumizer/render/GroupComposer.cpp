@@ -42,7 +42,7 @@ bool comesFirst(const VolumeInstance* a, const VolumeInstance* b)
 bool GroupComposer::prepare(VolumeInstance& instance, PreparedVolume& volume)
 {
     volume.instance = &instance;
-    volume.view = {toGlm(*instance.leaf->_modelview), toGlm(*instance.leaf->_projection)};
+    volume.view = {toGlm(*instance.leaf->_modelview), toGlm(usualProjection(*instance.leaf))};
     if (instance.look->features.slab) return true;
     const bool mergeable = _group.volumes.size() > 1 || !_group.surfaces.empty();
     volume.sliced = std::make_unique<SlicedVolume>();
@@ -71,7 +71,8 @@ VolumeOutline GroupComposer::outlineOf(const VolumeInstance& volume) const
     outline.depth = volume.depth;
     // Faces of slabs are a little larger than their box.
     outline.margin = {4.0 / std::max(_viewport[2], 1), 4.0 / std::max(_viewport[3], 1)};
-    const glm::dmat4 toClip = toGlm(*volume.leaf->_projection) * toGlm(*volume.leaf->_modelview);
+    const glm::dmat4 toClip =
+        toGlm(usualProjection(*volume.leaf)) * toGlm(*volume.leaf->_modelview);
     for (int i = 0; i < 8; ++i) {
         const glm::dvec4 clip = toClip * glm::dvec4(volume.prepared->regionBox.corner(i), 1.0);
         outline.everywhere = outline.everywhere || !(clip.w > 0.0);
@@ -363,7 +364,10 @@ bool GroupComposer::isWorthSorting(const Region& region) const
     for (std::size_t s : region.surfaces) {
         if (!leavesDepth(_surfaces[s])) return false;
         // Fragments are counted by stencil values.
-        if (isOn(_surfaces[s].leaf->leaf()._parent, GL_STENCIL_TEST, false)) return false;
+        const osgUtil::StateGraph* graph = _surfaces[s].leaf->leaf()._parent;
+        if (isOn(graph, GL_STENCIL_TEST, false) || !hasUsualDepthTest(graph)) return false;
+        // The target is of floats, which logic operations leave alone.
+        if (isOn(graph, GL_COLOR_LOGIC_OP, false)) return false;
         triangles += _surfaces[s].mesh ? _surfaces[s].mesh->triangleCount() : UNKNOWN_TRIANGLES;
     }
     return triangles <= MAXIMUM_SORTED_TRIANGLES;

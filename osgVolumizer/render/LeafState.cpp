@@ -1,6 +1,10 @@
 #include "LeafState.h"
 
+#include "Matrices.h"
+
+#include <osg/ClipControl>
 #include <osg/ColorMask>
+#include <osg/DepthRangeIndexed>
 
 #include <algorithm>
 #include <vector>
@@ -51,21 +55,6 @@ bool isOn(const osgUtil::StateGraph* graph, GLenum mode, bool byDefault)
     return on;
 }
 
-namespace {
-
-// Whether an attribute of a type holds against those set further down.
-bool isOverridden(const osgUtil::StateGraph* graph, StateAttribute::Type type)
-{
-    for (; graph; graph = graph->_parent) {
-        if (!graph->getStateSet()) continue;
-        const auto* pair = graph->getStateSet()->getAttributePair(type);
-        if (pair && (pair->second & StateAttribute::OVERRIDE)) return true;
-    }
-    return false;
-}
-
-} // namespace
-
 bool writesDepth(const osgUtil::StateGraph* graph)
 {
     const auto* depth = effective<osg::Depth>(graph, StateAttribute::DEPTH);
@@ -84,12 +73,37 @@ StateAbove stateAbove(const osgUtil::StateGraph* graph)
     StateAbove state;
     if (const auto* depth = effective<osg::Depth>(graph, StateAttribute::DEPTH))
         state.depthTest = {depth->getFunction(), depth->getZNear(), depth->getZFar()};
+    if (const auto* range =
+            effective<osg::DepthRangeIndexed>(graph, StateAttribute::DEPTHRANGEINDEXED)) {
+        state.depthTest.zNear = range->getZNear();
+        state.depthTest.zFar = range->getZFar();
+    }
     if (!isDepthTested(graph)) state.depthTest.function = osg::Depth::ALWAYS;
     state.stencilTested = isOn(graph, GL_STENCIL_TEST, false);
     state.allChannels = writesAllChannels(graph);
-    state.blendOverridden = isOverridden(graph, StateAttribute::BLENDFUNC) ||
-                            isOverridden(graph, StateAttribute::BLENDEQUATION);
+    constexpr GLenum RASTERIZER_DISCARD = 0x8C89; // GL_RASTERIZER_DISCARD
+    for (GLenum mode : {GLenum(GL_SCISSOR_TEST), GLenum(GL_POLYGON_STIPPLE), RASTERIZER_DISCARD})
+        state.partly = state.partly || isOn(graph, mode, false);
+    state.toUsualClip = toUsualClip(graph);
     return state;
+}
+
+glm::dmat4 toUsualClip(const osgUtil::StateGraph* graph)
+{
+    glm::dmat4 map(1.0);
+    const auto* control = effective<osg::ClipControl>(graph, StateAttribute::CLIPCONTROL);
+    if (!control) return map;
+    if (control->getOrigin() == osg::ClipControl::UPPER_LEFT) map[1][1] = -1.0;
+    if (control->getDepthMode() == osg::ClipControl::ZERO_TO_ONE) {
+        map[2][2] = 2.0;
+        map[3][2] = -1.0;
+    }
+    return map;
+}
+
+osg::Matrixd usualProjection(const osgUtil::RenderLeaf& leaf)
+{
+    return toOsg(toUsualClip(leaf._parent) * toGlm(*leaf._projection));
 }
 
 } // namespace render

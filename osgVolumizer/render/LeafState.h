@@ -2,7 +2,10 @@
 
 #include <osg/Depth>
 #include <osg/StateSet>
+#include <osgUtil/RenderLeaf>
 #include <osgUtil/StateGraph>
+
+#include <glm/mat4x4.hpp>
 
 namespace osgVolumizer {
 namespace render {
@@ -57,15 +60,19 @@ struct StateAbove
 {
     DepthTest depthTest;
     bool stencilTested = false, allChannels = true;
-    bool blendOverridden = false; ///< what is above overrides the volumes' own blending
+    bool partly = false; ///< scissor, stipple or discarding keep it off pixels
+    glm::dmat4 toUsualClip{1.0};
 
     /// Whether it can make no difference which drawable leaves a fragment.
-    bool isUsual() const
-    {
-        return depthTest.isUsual() && !stencilTested && allChannels && !blendOverridden;
-    }
+    bool isUsual() const { return depthTest.isUsual() && !stencilTested && allChannels && !partly; }
 };
 StateAbove stateAbove(const osgUtil::StateGraph* graph);
+
+/// From the clip space that osg::ClipControl asks for to the usual one: y up, -w <= z <= w.
+/// Column-major.
+glm::dmat4 toUsualClip(const osgUtil::StateGraph* graph);
+/// A leaf's projection to the usual clip space.
+osg::Matrixd usualProjection(const osgUtil::RenderLeaf& leaf);
 
 } // namespace render
 } // namespace osgVolumizer

@@ -1,5 +1,6 @@
 #include "MergeGroups.h"
 
+#include "LeafState.h"
 #include "Matrices.h"
 
 #include <numeric>
@@ -41,7 +42,7 @@ BoxInView viewOf(const VolumeInstance& volume)
 {
     const core::Box3d& box = volume.prepared->regionBox;
     BoxInView view = boxInView({box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z},
-                               *volume.leaf->_modelview, *volume.leaf->_projection);
+                               *volume.leaf->_modelview, usualProjection(*volume.leaf));
     view.depth = volume.depth;
     return view;
 }
@@ -64,9 +65,10 @@ MergeGroups findMergeGroups(const std::vector<VolumeInstance*>& volumes,
             if (overlaps(views[a], views[b])) sets.join(a, b);
 
     std::vector<std::size_t> anyVolumeOf; // per surface
+    const osg::Matrixd projection = usualProjection(*volumes.front()->leaf);
     for (osgUtil::RenderLeaf* leaf : leaves) {
         if (own.count(leaf)) continue;
-        const auto surface = ForeignLeaf::examine(*leaf, *volumes.front()->leaf->_projection);
+        const auto surface = ForeignLeaf::examine(*leaf, projection);
         if (!surface) continue;
         std::size_t first = n;
         for (std::size_t v = 0; v < n; ++v) {

@@ -148,6 +148,18 @@ bool isStencilUsed(const std::vector<osgUtil::RenderLeaf*>& leaves,
     });
 }
 
+// Whether leaves that are not ours, between ours, need the framebuffer's own fixed-point values.
+bool isLogicOpUsed(const std::vector<osgUtil::RenderLeaf*>& leaves,
+                   const std::unordered_set<const osgUtil::RenderLeaf*>& replaced,
+                   const core::DepthInterval& ends)
+{
+    return std::any_of(leaves.begin(), leaves.end(), [&](const osgUtil::RenderLeaf* leaf) {
+        if (dynamic_cast<const VolumeDrawable*>(leaf->getDrawable())) return false;
+        const bool between = leaf->_depth >= ends.nearDepth && leaf->_depth <= ends.farDepth;
+        return (between || replaced.count(leaf)) && isOn(leaf->_parent, GL_COLOR_LOGIC_OP, false);
+    });
+}
+
 bool mayWriteDepth(const osgUtil::RenderLeaf* leaf)
 {
     return writesDepth(leaf->_parent) || !keepsState(*leaf->getDrawable());
@@ -277,6 +289,7 @@ void Merger::merge(const osgUtil::RenderBin& bin, LeafList& leaves,
         const core::DepthInterval ends = endsOf(made);
         if (isDepthWritten(leaves, replaced, ends)) accumulation->keepDepth();
         if (isStencilUsed(leaves, replaced, ends)) accumulation->useStencil();
+        if (isLogicOpUsed(leaves, replaced, ends)) accumulation->keepFramebuffer();
         if (groups.surfaces.empty()) leaveOut(bin, leaves, visible, ends, *accumulation);
         addAccumulation(*accumulation, *visible.front()->leaf, viewport(), ends, made);
     }
@@ -331,7 +344,7 @@ Merger::visibleVolumes(const std::vector<osgUtil::RenderBin*>& bins) const
         const auto found = byDrawable.find(leaf->getDrawable());
         if (found == byDrawable.end()) return false;
         VolumeInstance& volume = *found->second;
-        const core::View view{toGlm(*leaf->_modelview), toGlm(*leaf->_projection)};
+        const core::View view{toGlm(*leaf->_modelview), toGlm(usualProjection(*leaf))};
         if (!findDepthRange(volume, view)) return true;
         volume.leaf = leaf;
         sortBricks(volume, view);

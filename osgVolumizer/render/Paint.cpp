@@ -3,6 +3,7 @@
 #include "Matrices.h"
 #include "MergeGroups.h"
 #include "ReportOnce.h"
+#include "ShaderSource.h"
 #include "Uniforms.h"
 #include "VolumeInstance.h"
 
@@ -12,8 +13,6 @@
 
 namespace osgVolumizer {
 namespace render {
-
-std::string shaderSource(const std::string& name); // generated from shaders/*.glsl
 
 namespace {
 

@@ -1,7 +1,10 @@
 #include "ScreenPass.h"
 
+#include "ForeignState.h"
 #include "ScissorScope.h"
+#include "ShaderSource.h"
 #include "SharedStateSets.h"
+#include "Uniforms.h"
 
 #include <osg/ColorMask>
 #include <osg/Depth>
@@ -13,7 +16,17 @@
 namespace osgVolumizer {
 namespace render {
 
-std::string shaderSource(const std::string& name); // generated from shaders/*.glsl
+namespace {
+
+// Whatever keeps the leaf beside from some of them.
+void reachAllPixels(osg::StateSet& set)
+{
+    constexpr GLenum RASTERIZER_DISCARD = 0x8C89; // GL_RASTERIZER_DISCARD
+    for (GLenum mode : {GLenum(GL_SCISSOR_TEST), GLenum(GL_POLYGON_STIPPLE), RASTERIZER_DISCARD})
+        set.setMode(mode, FORCE_OFF);
+}
+
+} // namespace
 
 osg::ref_ptr<osg::StateSet> screenState(const std::string& fragmentShader, bool writeDepth,
                                         const std::string& code)
@@ -21,15 +34,15 @@ osg::ref_ptr<osg::StateSet> screenState(const std::string& fragmentShader, bool 
     osg::ref_ptr<osg::Program> program = new osg::Program;
     program->setName("osgVolumizer " + fragmentShader);
     const std::string version = "#version 330\n";
+    program->addShader(makeShader(osg::Shader::VERTEX, version, shaderSource("screen.vert.glsl")));
     program->addShader(
-        new osg::Shader(osg::Shader::VERTEX, version + shaderSource("screen.vert.glsl")));
-    program->addShader(
-        new osg::Shader(osg::Shader::FRAGMENT, version + code + shaderSource(fragmentShader)));
+        makeShader(osg::Shader::FRAGMENT, version, code + shaderSource(fragmentShader)));
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
     set->setAttributeAndModes(program, FORCE_ON);
     set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, writeDepth), FORCE_ON);
-    for (GLenum mode : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_ALPHA_TEST, GL_SCISSOR_TEST})
+    for (GLenum mode : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_ALPHA_TEST})
         set->setMode(mode, FORCE_OFF);
+    reachAllPixels(*set);
     for (GLenum plane = 0; plane < 6; ++plane)
         set->setMode(GL_CLIP_PLANE0 + plane, FORCE_OFF);
     // Viewers show wire frames by a state above the scene.
@@ -46,6 +59,7 @@ void drawScreen(osg::State& state, ContextResources& resources, const glm::ivec4
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const ScissorScope scissor;
     if (!scissor.set(area)) return;
+    const ForeignStateScope foreign(state, false);
     state.lazyDisablingOfVertexAttributes();
     state.applyDisablingOfVertexAttributes();
     resources.vertices.stream(gl, GL_ARRAY_BUFFER_ARB, corners.data(), sizeof(corners));
@@ -63,7 +77,7 @@ osg::ref_ptr<osg::StateSet> clearState()
         osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
         set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE_ON);
         set->setAttribute(new osg::Stencil, FORCE_ON); // its write mask is all ones
-        set->setMode(GL_SCISSOR_TEST, FORCE_OFF);
+        reachAllPixels(*set);
         return set;
     });
 }
@@ -92,7 +106,7 @@ void setUniform(osg::State& state, const char* name, int value)
 {
     if (const auto* program = state.getLastAppliedProgramObject())
         state.get<osg::GLExtensions>()->glUniform1i(
-            program->getUniformLocation(osg::Uniform::getNameID(name)), value);
+            program->getUniformLocation(osg::Uniform::getNameID(uniformName(name))), value);
 }
 
 } // namespace render

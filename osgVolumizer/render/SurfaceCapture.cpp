@@ -1,9 +1,11 @@
 #include "SurfaceCapture.h"
 
 #include "ContextRefusals.h"
+#include "ForeignState.h"
 #include "ReportOnce.h"
 #include "ScreenPass.h"
 #include "SharedStateSets.h"
+#include "Uniforms.h"
 #include "VolumeProgram.h"
 
 #include <osg/Depth>
@@ -72,9 +74,9 @@ std::string sortCode(int slots)
 
 osg::ref_ptr<osg::StateSet> withUnits(osg::ref_ptr<osg::StateSet> set)
 {
-    set->addUniform(new osg::Uniform("slotDepths", int(UNIT_FIRST_LAYER)));
-    set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
-    set->addUniform(new osg::Uniform("sortedSlots", int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform(uniformName("slotDepths").c_str(), int(UNIT_FIRST_LAYER)));
+    set->addUniform(new osg::Uniform(uniformName("opaqueDepth").c_str(), int(UNIT_OPAQUE_DEPTH)));
+    set->addUniform(new osg::Uniform(uniformName("sortedSlots").c_str(), int(UNIT_SORTED_FAR)));
     return set;
 }
 
@@ -194,6 +196,7 @@ void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
         _accumulation->bindTarget(state);
         break;
     }
+    reapplyInNextFrame(state);
     for (unsigned unit = UNIT_OPAQUE_DEPTH; unit <= UNIT_FIRST_LAYER; ++unit)
         state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }

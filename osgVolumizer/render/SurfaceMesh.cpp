@@ -1,5 +1,7 @@
 #include "SurfaceMesh.h"
 
+#include "LeafState.h"
+
 #include "ContextResources.h"
 
 #include <osg/Program>
@@ -136,7 +138,7 @@ std::unique_ptr<SurfaceMesh> SurfaceMesh::of(const ForeignLeaf& foreign)
     BoxInView& view = mesh->_view;
     view.screen = {glm::dvec2(infinity), glm::dvec2(-infinity)};
     view.depth = {infinity, -infinity};
-    const osg::Matrixd toClip = *leaf._modelview * *leaf._projection;
+    const osg::Matrixd toClip = *leaf._modelview * usualProjection(leaf);
     const osg::Matrixd& toEye = *leaf._modelview;
     mesh->_depths.resize(vertices.size());
     mesh->_devices.resize(vertices.size());

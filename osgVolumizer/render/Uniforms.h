@@ -7,10 +7,18 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 
+#include <string>
 #include <vector>
 
 namespace osgVolumizer {
 namespace render {
+
+/// Uniforms of volumes' programs have a prefix, so that none of the scene's is meant for them, or
+/// has another type. Shader code is written without: see withUniformPrefix().
+inline std::string uniformName(const std::string& name)
+{
+    return "osgVolumizer_" + name;
+}
 
 /// Sets uniforms of the program that OSG applied last, without going through state sets.
 class Uniforms
@@ -63,7 +71,7 @@ public:
 private:
     GLint location(const char* name) const
     {
-        return _program.getUniformLocation(osg::Uniform::getNameID(name));
+        return _program.getUniformLocation(osg::Uniform::getNameID(uniformName(name)));
     }
 
     osg::GLExtensions& _gl;

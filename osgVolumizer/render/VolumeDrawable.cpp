@@ -4,6 +4,7 @@
 #include "BrickCells.h"
 #include "BrickTextures.h"
 #include "ContextResources.h"
+#include "ForeignState.h"
 #include "Framebuffer.h"
 #include "Matrices.h"
 #include "PixelRays.h"
@@ -26,12 +27,10 @@ namespace render {
 
 namespace {
 
-glm::dvec4 viewportOf(osg::State& state)
+glm::dvec4 currentViewport()
 {
-    if (const osg::Viewport* v = state.getCurrentViewport())
-        return {v->x(), v->y(), v->width(), v->height()};
-    GLint v[4];
-    glGetIntegerv(GL_VIEWPORT, v);
+    GLfloat v[4];
+    glGetFloatv(GL_VIEWPORT, v); // which more than one attribute of OSG can set
     return {v[0], v[1], v[2], v[3]};
 }
 
@@ -119,7 +118,8 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
     const ProgramFeatures& features = look.features;
     const AccumulationBuffers& buffers = resources.accumulation;
     const DepthTest& test = look.above.depthTest;
-    const bool ends = buffers.hasOpaqueDepth && test.function != osg::Depth::ALWAYS;
+    const bool ends = buffers.hasOpaqueDepth && test.function != osg::Depth::ALWAYS &&
+                      test.function != osg::Depth::NOTEQUAL;
     uniforms.set("opaqueRule", !ends ? 0 : test.nearerPasses() ? 1 : 2);
     uniforms.set("depthRange", depthRange(test));
     if (!buffers.opaqueDepth) return;
@@ -231,10 +231,12 @@ void drawMesh(osg::RenderInfo& renderInfo, ContextResources& resources, const Un
               const VolumeMesh& mesh, const VolumeLook& look)
 {
     osg::State& state = *renderInfo.getState();
+    const osg::Depth::Function test = look.above.depthTest.function;
+    if (look.features.gathers() && (test == osg::Depth::NEVER || test == osg::Depth::EQUAL)) return;
     // Gathered values hide nothing, so they need no order, and no parts.
     std::optional<RayTarget> target;
     if (look.features.gathers())
-        target.emplace(state, resources, look.features, glm::ivec4(viewportOf(state)));
+        target.emplace(state, resources, look.features, glm::ivec4(currentViewport()));
     if (target && !target->made()) return;
     {
         const BoundMesh bound(state, *state.get<osg::GLExtensions>(), resources, mesh,
@@ -320,13 +322,15 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     const glm::dmat4 toEye = toGlm(state.getModelViewMatrix());
     const glm::dmat4 projection = toGlm(state.getProjectionMatrix());
     const Result<PixelRays> rays =
-        pixelRays(toEye, projection, viewportOf(state), _look->referenceDepth, _look->center);
+        pixelRays(toEye, _look->above.toUsualClip * projection, currentViewport(),
+                  _look->referenceDepth, _look->center);
     if (!rays) {
         reportError(rays.status);
         return;
     }
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const FirstDrawBufferScope first(gl, buffers.drawBuffers);
+    const ForeignStateScope foreign(state, true);
     const Uniforms uniforms(gl, *program);
     // Meshes for captured surfaces are in device coordinates.
     uniforms.set("frameToClip",
@@ -339,6 +343,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     drawMesh(renderInfo, *resources, uniforms, *_mesh, *_look);
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
+    reapplyInNextFrame(state);
     // OSG compares attributes by address: make it bind its own again whatever ours were.
     for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH, UNIT_LAYER_DEPTH,
                           UNIT_SORTED_FAR, UNIT_SORTED_NEAR, UNIT_CELLS})

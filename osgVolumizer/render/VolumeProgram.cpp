@@ -1,21 +1,22 @@
 #include "VolumeProgram.h"
 
 #include "Paint.h"
+#include "ShaderSource.h"
 #include "SharedStateSets.h"
+#include "Uniforms.h"
 
 #include <osg/AlphaFunc>
 #include <osg/BlendEquation>
 #include <osg/BlendFunc>
 #include <osg/CullFace>
 #include <osg/Depth>
+#include <osg/PolygonMode>
 #include <osg/Program>
 
 #include <atomic>
 
 namespace osgVolumizer {
 namespace render {
-
-std::string shaderSource(const std::string& name); // generated from shaders/*.glsl
 
 namespace {
 
@@ -61,18 +62,36 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
     osg::ref_ptr<osg::Program> result = new osg::Program;
     result->setName("osgVolumizer " + kind);
     result->addShader(
-        new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource(kind + ".vert.glsl")));
-    std::string fragment = header(features);
+        makeShader(osg::Shader::VERTEX, header(features), shaderSource(kind + ".vert.glsl")));
+    std::string fragment;
     for (const char* file : {"voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl",
                              "skipping.glsl", "segment.glsl"})
         fragment += shaderSource(file);
     if (features.paintCount > 0) fragment += paintSource(features.paintCount);
     fragment += shaderSource(kind + ".frag.glsl");
-    result->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));
+    result->addShader(makeShader(osg::Shader::FRAGMENT, header(features), fragment));
     return result;
 }
 
 std::atomic<bool> countsSamples{false};
+
+// What holds against states above that override.
+constexpr unsigned KEPT = osg::StateAttribute::ON | osg::StateAttribute::PROTECTED;
+constexpr unsigned KEPT_OFF = osg::StateAttribute::OFF | osg::StateAttribute::PROTECTED;
+
+// Faces only say which pixels there is something to integrate in: how geometry is rasterised or
+// cut, and what logic does with it, is not for them.
+void keepFacesWhole(osg::StateSet& set)
+{
+    constexpr GLenum PRIMITIVE_RESTART = 0x8F9D; // GL_PRIMITIVE_RESTART
+    set.setAttribute(new osg::PolygonMode, KEPT);
+    for (GLenum mode :
+         {GLenum(GL_CULL_FACE), GLenum(GL_POLYGON_OFFSET_FILL), GLenum(GL_POLYGON_OFFSET_LINE),
+          GLenum(GL_POLYGON_OFFSET_POINT), GLenum(GL_COLOR_LOGIC_OP), PRIMITIVE_RESTART})
+        set.setMode(mode, KEPT_OFF);
+    for (GLenum plane = 0; plane < 8; ++plane)
+        set.setMode(GL_CLIP_PLANE0 + plane, KEPT_OFF);
+}
 
 osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
 {
@@ -80,34 +99,32 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
     set->setName("osgVolumizer");
     set->setDataVariance(osg::Object::STATIC);
-    set->setAttributeAndModes(program(features), StateAttribute::ON | StateAttribute::PROTECTED);
+    set->setAttributeAndModes(program(features), KEPT);
     // What surfaces leave in the target's alpha need not be what they take of the light behind.
     constexpr GLenum SOURCE1_COLOR = 0x88F9;
     const bool captured = features.slotCount > 0;
     set->setAttributeAndModes(
         new osg::BlendFunc(osg::BlendFunc::ONE,
                            captured ? SOURCE1_COLOR : GLenum(GL_ONE_MINUS_SRC_ALPHA)),
-        StateAttribute::ON);
-    set->setAttribute(new osg::BlendEquation(osg::BlendEquation::FUNC_ADD));
+        KEPT);
+    set->setAttribute(new osg::BlendEquation(osg::BlendEquation::FUNC_ADD), KEPT);
     set->setAttributeAndModes(
-        new osg::Depth(captured ? osg::Depth::ALWAYS : osg::Depth::LEQUAL, 0.0, 1.0, false),
-        StateAttribute::ON | StateAttribute::PROTECTED);
+        new osg::Depth(captured ? osg::Depth::ALWAYS : osg::Depth::LEQUAL, 0.0, 1.0, false), KEPT);
     // OSG's transparent bins drop fragments of alpha 0, which may still carry colour.
-    set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f),
-                              StateAttribute::OFF | StateAttribute::PROTECTED);
+    set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f), KEPT_OFF);
     // Segments end at near and far themselves: rounding must not cut off the face on the near
     // plane.
-    if (features.slab) set->setMode(GL_DEPTH_CLAMP, StateAttribute::ON | StateAttribute::PROTECTED);
-    set->setMode(GL_CULL_FACE, StateAttribute::OFF | StateAttribute::PROTECTED);
-    set->addUniform(new osg::Uniform("voxels", int(UNIT_VOXELS)));
-    set->addUniform(new osg::Uniform("lookupTable", int(UNIT_TABLE)));
-    set->addUniform(new osg::Uniform("opaqueDepth", int(UNIT_OPAQUE_DEPTH)));
-    set->addUniform(new osg::Uniform("layerDepth", int(UNIT_LAYER_DEPTH)));
-    set->addUniform(new osg::Uniform("sortedSlots", int(UNIT_SORTED_FAR)));
-    set->addUniform(new osg::Uniform("slotColors", int(UNIT_SORTED_NEAR)));
-    set->addUniform(new osg::Uniform("sortedFar", int(UNIT_SORTED_FAR)));
-    set->addUniform(new osg::Uniform("sortedNear", int(UNIT_SORTED_NEAR)));
-    set->addUniform(new osg::Uniform("cells", int(UNIT_CELLS)));
+    if (features.slab) set->setMode(GL_DEPTH_CLAMP, KEPT);
+    keepFacesWhole(*set);
+    set->addUniform(new osg::Uniform(uniformName("voxels").c_str(), int(UNIT_VOXELS)));
+    set->addUniform(new osg::Uniform(uniformName("lookupTable").c_str(), int(UNIT_TABLE)));
+    set->addUniform(new osg::Uniform(uniformName("opaqueDepth").c_str(), int(UNIT_OPAQUE_DEPTH)));
+    set->addUniform(new osg::Uniform(uniformName("layerDepth").c_str(), int(UNIT_LAYER_DEPTH)));
+    set->addUniform(new osg::Uniform(uniformName("sortedSlots").c_str(), int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform(uniformName("slotColors").c_str(), int(UNIT_SORTED_NEAR)));
+    set->addUniform(new osg::Uniform(uniformName("sortedFar").c_str(), int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform(uniformName("sortedNear").c_str(), int(UNIT_SORTED_NEAR)));
+    set->addUniform(new osg::Uniform(uniformName("cells").c_str(), int(UNIT_CELLS)));
     set->setRenderBinDetails(10, "DepthSortedBin");
     return set;
 }
@@ -143,9 +160,9 @@ osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features)
     osg::ref_ptr<osg::Program> result = new osg::Program;
     result->setName("osgVolumizer resolve");
     result->addShader(
-        new osg::Shader(osg::Shader::VERTEX, header(features) + shaderSource("screen.vert.glsl")));
-    result->addShader(new osg::Shader(osg::Shader::FRAGMENT,
-                                      header(features) + shaderSource("resolve.frag.glsl")));
+        makeShader(osg::Shader::VERTEX, header(features), shaderSource("screen.vert.glsl")));
+    result->addShader(
+        makeShader(osg::Shader::FRAGMENT, header(features), shaderSource("resolve.frag.glsl")));
     return result;
 }
 

@@ -75,8 +75,9 @@ enum TextureUnit : unsigned
     UNIT_SORTED_FAR, ///< the four farthest depths of a pixel's surfaces
     UNIT_SORTED_NEAR,
     UNIT_CELLS,
-    UNIT_FIRST_LAYER,                   ///< and the following: captured depths
-    UNIT_FIRST_PAINT = UNIT_FIRST_LAYER ///< and the following, in other programs
+    UNIT_FIRST_LAYER,                    ///< and the following: captured depths
+    UNIT_FIRST_PAINT = UNIT_FIRST_LAYER, ///< and the following, in other programs
+    UNIT_COUNT = UNIT_FIRST_LAYER + 8
 };
 /// Vertex attributes.
 enum Attribute : unsigned

@@ -99,7 +99,8 @@ std::vector<StateRow> primitiveRows()
          Effect::NONE, true, NO_FACES},
         {"PolygonOffset: away", with<osg::PolygonOffset>(0.0f, 1e7f), Effect::NONE, true, NO_FACES},
         {"PolygonOffset: towards the eye", with<osg::PolygonOffset>(0.0f, -1e7f), Effect::NONE,
-         true, NO_FACES},
+         true, std::string(NO_FACES) + " Surfaces in a volume lie where the offset puts them.",
+         Target::ANY, Scope::VOLUMES},
         {"PolygonStipple", setStipple, Effect::AS_ON_GEOMETRY, true,
          "Drawn where the pattern has ones."},
         {"`GL_POLYGON_SMOOTH`", mode(GL_POLYGON_SMOOTH), Effect::NONE, false, NO_FACES},
@@ -118,7 +119,7 @@ std::vector<StateRow> primitiveRows()
          "Nothing is drawn."},
         {"Capabilityi: Enablei", setEnablei, Effect::NONE, false, "Means GL_BLEND only."},
         {"Capabilityi: Disablei", setDisablei, Effect::NONE, true,
-         "Samples along a ray are composited by the ray function."},
+         "Samples along a ray are composited by the ray function.", Target::ANY, Scope::VOLUMES},
     };
 }
 

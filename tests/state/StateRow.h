@@ -25,6 +25,14 @@ enum class Target
     SAMPLES, ///< RGBA8 with four samples
 };
 
+/// With which scenes a state can be shown.
+enum class Scope
+{
+    ALL,
+    VOLUMES,  ///< surfaces under it are not merged with volumes, or OSG itself mixes it up for them
+    ELSEWHERE ///< none: flat geometry cannot stand for volumes; a test of its own shows it
+};
+
 /// One state of OSG: a row of the table in the documentation, and a case of the tests.
 struct StateRow
 {
@@ -35,6 +43,7 @@ struct StateRow
     bool shows = true; ///< whether translucent geometry in the test's scene changes with it
     std::string why;   ///< for the table: what it means, or why not
     Target target = Target::ANY;
+    Scope scope = Scope::ALL;
 };
 
 /// All rows, in the order of the table.

@@ -66,6 +66,10 @@ protected:
     static bool isShownBy(const StateRow& row)
     {
         const Target target = std::get<1>(GetParam());
+        const Content content = std::get<0>(GetParam());
+        const bool surfaces = content == Content::SURFACE || content == Content::BARE_SURFACE;
+        if (row.scope == Scope::ELSEWHERE || (row.scope == Scope::VOLUMES && surfaces))
+            return false;
         return row.target == target || (row.target == Target::ANY && target != Target::SAMPLES);
     }
     // 8 bits are rounded once where all is composited, and once a layer of geometry.
