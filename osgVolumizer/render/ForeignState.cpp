@@ -54,12 +54,14 @@ ForeignStateScope::~ForeignStateScope()
 void reapplyInNextFrame(osg::State& state)
 {
     constexpr unsigned MOST = 8; // of each kind
-    for (unsigned i = 0; i < MOST; ++i) {
-        for (const StateAttribute::Type type : {StateAttribute::CLIPPLANE, StateAttribute::LIGHT})
-            if (state.getLastAppliedAttribute(type, i)) state.haveAppliedAttribute(type, i);
-        if (state.getLastAppliedTextureAttribute(i, StateAttribute::TEXGEN))
-            state.haveAppliedTextureAttribute(i, StateAttribute::TEXGEN);
-    }
+    for (const osg::StateSet* set : state.getStateSetStack())
+        for (unsigned i = 0; i < MOST; ++i) {
+            for (const StateAttribute::Type type :
+                 {StateAttribute::CLIPPLANE, StateAttribute::LIGHT})
+                if (set->getAttribute(type, i)) state.haveAppliedAttribute(type, i);
+            if (set->getTextureAttribute(i, StateAttribute::TEXGEN))
+                state.haveAppliedTextureAttribute(i, StateAttribute::TEXGEN);
+        }
 }
 
 } // namespace render
