@@ -4,6 +4,7 @@
 #include "core/NumberRule.h"
 #include "core/Text.h"
 #include "render/ContextResources.h"
+#include "render/Flattening.h"
 #include "render/FrameTimes.h"
 #include "render/SamplingChoice.h"
 #include "render/SharedStateSets.h"
@@ -51,6 +52,14 @@ VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp&
 }
 
 VolumeAppearance::~VolumeAppearance() = default;
+
+void VolumeAppearance::accept(osg::NodeVisitor& visitor)
+{
+    if (!visitor.validNodeMask(*this) || render::keepsTransforms(*this, visitor)) return;
+    visitor.pushOntoNodePath(this);
+    visitor.apply(*this);
+    visitor.popFromNodePath();
+}
 
 void VolumeAppearance::setVoxels(Voxels* voxels)
 {

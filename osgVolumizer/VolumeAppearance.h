@@ -104,7 +104,7 @@ public:
         PRECOMPUTED
     };
 
-    META_Node(osgVolumizer, VolumeAppearance);
+    META_Object(osgVolumizer, VolumeAppearance);
 
     VolumeAppearance();
     /// Shares voxels and table with `o`. With DEEP_COPY_OBJECTS, and so with DEEP_COPY_ALL, it has
@@ -112,6 +112,9 @@ public:
     /// flag out (`DEEP_COPY_ALL & ~DEEP_COPY_OBJECTS`). As with all that OSG copies, what several
     /// appearances share becomes one for each.
     VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
+
+    /// As any group, but that osgUtil::Optimizer takes no transform from above it.
+    void accept(osg::NodeVisitor& visitor) override;
 
     void setVoxels(Voxels* voxels);
     Voxels* getVoxels() const { return _voxels.get(); }
