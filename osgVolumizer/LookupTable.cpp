@@ -4,10 +4,19 @@
 
 namespace osgVolumizer {
 
-LookupTable::LookupTable() : _function(std::make_shared<core::TransferFunction>()) {}
+namespace {
+
+std::atomic<unsigned> lastCount{0};
+
+} // namespace
+
+LookupTable::LookupTable()
+    : _function(std::make_shared<core::TransferFunction>()), _modifiedCount(++lastCount)
+{
+}
 
 LookupTable::LookupTable(const LookupTable& o, const osg::CopyOp& op)
-    : osg::Object(o, op), _fileName(o._fileName)
+    : osg::Object(o, op), _modifiedCount(++lastCount), _fileName(o._fileName)
 {
     std::lock_guard<std::mutex> lock(o._mutex);
     _function = o._function;
@@ -20,7 +29,7 @@ void LookupTable::assign(core::TransferFunction function, Domain domain)
     std::lock_guard<std::mutex> lock(_mutex);
     _function = std::move(fresh);
     _domain = domain;
-    ++_modifiedCount;
+    _modifiedCount = ++lastCount;
 }
 
 Status LookupTable::setPoints(LookupPoints points, Domain domain)

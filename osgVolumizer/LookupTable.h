@@ -38,6 +38,7 @@ public:
 
     /// A white ramp over the whole range: setRamp(0.5, 1).
     LookupTable();
+    /// A table of its own, whatever the flags.
     LookupTable(const LookupTable& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
     /// See core::TransferFunction::create for what is refused; the table then keeps what it had.
@@ -53,7 +54,7 @@ public:
     Domain getDomain() const;
     /// The function over the fraction of `range` (data values, low < high), whatever the domain.
     Function getNormalizedFunction(const osg::Vec2d& range) const;
-    /// Grows with every change. Thread safe.
+    /// Grows with every change, to a number that no other table has had. Thread safe.
     unsigned getModifiedCount() const { return _modifiedCount; }
 
     /// How a scene file refers to the table; empty: inline.
@@ -69,14 +70,14 @@ private:
     mutable std::mutex _mutex; // of the next two
     Function _function;
     Domain _domain = RANGE_FRACTION;
-    std::atomic<unsigned> _modifiedCount{0};
+    std::atomic<unsigned> _modifiedCount;
     std::string _fileName;
 };
 
 /// Reads a `.lut` (plain text, "value r g b a" per line in data values, '#' starts a comment) or
 /// OSG's `.tf` (the same, components 0 to 255 unless a line "colour-scale n" says otherwise, in any
-/// order). Found along OSG's data path. The error names file, line and value; files above 64 MiB
-/// are refused.
+/// order). Found along OSG's data path. The error names file, line and value; files above 64 MiB,
+/// and what is no regular file, are refused.
 OSGVOLUMIZER_EXPORT Result<osg::ref_ptr<LookupTable>>
 readLookupTable(const std::string& fileName, const osgDB::Options* options = nullptr);
 

@@ -1,5 +1,6 @@
 #include "LookupTable.h"
 
+#include "core/RegularFile.h"
 #include "core/Text.h"
 
 #include <osgDB/FileNameUtils>
@@ -78,6 +79,7 @@ std::string parsePoint(const std::vector<std::string_view>& words, double fullSc
 
 Result<std::string> readText(const std::string& path)
 {
+    if (Status status = core::requireRegularFile(path); !status.ok()) return status;
     constexpr std::uintmax_t maximum = 64u << 20;
     std::error_code failed;
     const std::uintmax_t size = std::filesystem::file_size(path, failed);
@@ -175,6 +177,7 @@ Status writeLookupTable(const LookupTable& table, const std::string& fileName,
     core::TransferFunction function = *table.getFunction();
     if (table.getDomain() == LookupTable::RANGE_FRACTION)
         function = function.mapped(range.y() - range.x(), range.x());
+    if (Status status = core::requireRegularTarget(fileName); !status.ok()) return status;
     std::ofstream file(fileName, std::ios::binary);
     file << "# value red green blue opacity\n";
     for (const Point& p : function.points()) {

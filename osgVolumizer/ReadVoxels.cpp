@@ -7,6 +7,7 @@
 #include <osgDB/Registry>
 
 #include <exception>
+#include <filesystem>
 
 namespace osgVolumizer {
 
@@ -37,7 +38,8 @@ Result<io::Source> readSource(std::string name, const osgDB::Options* options,
         name.pop_back();
     const std::string path = name.empty() ? name : osgDB::findDataFile(name, options);
     if (!path.empty()) {
-        if (osgDB::fileType(path) == osgDB::DIRECTORY)
+        std::error_code unknown; // OSG takes sockets for folders
+        if (std::filesystem::is_directory(path, unknown))
             return readFiles(io::listFolder(path), progress);
         return io::readImage(path, progress);
     }

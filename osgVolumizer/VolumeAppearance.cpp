@@ -1,13 +1,14 @@
 #include "VolumeAppearance.h"
 
 #include "Error.h"
+#include "core/NumberRule.h"
+#include "core/Text.h"
 #include "render/ContextResources.h"
+#include "render/Flattening.h"
 #include "render/FrameTimes.h"
 #include "render/SamplingChoice.h"
 #include "render/SharedStateSets.h"
 #include "render/TableTextures.h"
-
-#include <cmath>
 
 namespace osgVolumizer {
 
@@ -16,11 +17,18 @@ namespace {
 Status refuse(const VolumeAppearance& appearance, const char* field, double value,
               const char* expected)
 {
-    Status status(ErrorCode::VALUE_INVALID, "VolumeAppearance \"" + appearance.getName() +
-                                                "\": " + field + " is " + std::to_string(value) +
-                                                ", expected " + expected);
+    Status status(ErrorCode::VALUE_INVALID,
+                  "VolumeAppearance \"" + appearance.getName() + "\": " + field + " is " +
+                      core::formatNumber(value) + ", expected " + expected);
     reportError(status);
     return status;
+}
+
+/// The same object, or with DEEP_COPY_OBJECTS one of its own.
+template <class T>
+osg::ref_ptr<T> copied(const osg::ref_ptr<T>& object, const osg::CopyOp& op)
+{
+    return dynamic_cast<T*>(op(static_cast<const osg::Object*>(object.get())));
 }
 
 } // namespace
@@ -32,11 +40,11 @@ VolumeAppearance::VolumeAppearance()
 }
 
 VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op)
-    : osg::Group(o, op), _voxels(o._voxels), _lookupTable(o._lookupTable), _technique(o._technique),
-      _interpolation(o._interpolation), _lookup(o._lookup), _exactFiltering(o._exactFiltering),
-      _rayFunction(o._rayFunction), _isoValue(o._isoValue), _shading(o._shading),
-      _material(o._material), _gradients(o._gradients), _combineRule(o._combineRule),
-      _accumulationBits(o._accumulationBits), _sampling(o._sampling),
+    : osg::Group(o, op), _voxels(copied(o._voxels, op)), _lookupTable(copied(o._lookupTable, op)),
+      _technique(o._technique), _interpolation(o._interpolation), _lookup(o._lookup),
+      _exactFiltering(o._exactFiltering), _rayFunction(o._rayFunction), _isoValue(o._isoValue),
+      _shading(o._shading), _material(o._material), _gradients(o._gradients),
+      _combineRule(o._combineRule), _accumulationBits(o._accumulationBits), _sampling(o._sampling),
       _errorTolerance(o._errorTolerance), _targetFrameTime(o._targetFrameTime),
       _opacityUnit(o._opacityUnit), _tableTextures(new render::TableTextures),
       _samplingChoices(new render::SamplingChoices), _frameTimes(new render::FrameTimes)
@@ -44,6 +52,14 @@ VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp&
 }
 
 VolumeAppearance::~VolumeAppearance() = default;
+
+void VolumeAppearance::accept(osg::NodeVisitor& visitor)
+{
+    if (!visitor.validNodeMask(*this) || render::keepsTransforms(*this, visitor)) return;
+    visitor.pushOntoNodePath(this);
+    visitor.apply(*this);
+    visitor.popFromNodePath();
+}
 
 void VolumeAppearance::setVoxels(Voxels* voxels)
 {
@@ -62,20 +78,25 @@ int VolumeAppearance::getRequiredOverlap() const
 
 Status VolumeAppearance::setIsoValue(double dataValue)
 {
-    if (!std::isfinite(dataValue)) return refuse(*this, "iso-value", dataValue, "a finite number");
+    if (!core::FINITE.holds(dataValue))
+        return refuse(*this, "iso-value", dataValue, core::FINITE.expected);
     _isoValue = dataValue;
     return {};
 }
 
 Status VolumeAppearance::setMaterial(const Material& material)
 {
-    const std::pair<const char*, double> values[] = {{"ambient coefficient", material.ambient},
-                                                     {"diffuse coefficient", material.diffuse},
-                                                     {"specular coefficient", material.specular},
-                                                     {"shininess", material.shininess}};
-    for (const auto& value : values)
-        if (!(value.second >= 0.0) || !std::isfinite(value.second))
-            return refuse(*this, value.first, value.second, "a number that is not negative");
+    const struct
+    {
+        const char* name;
+        double value;
+        const core::NumberRule& rule;
+    } values[] = {{"ambient coefficient", material.ambient, core::COEFFICIENT},
+                  {"diffuse coefficient", material.diffuse, core::COEFFICIENT},
+                  {"specular coefficient", material.specular, core::COEFFICIENT},
+                  {"shininess", material.shininess, core::SHININESS}};
+    for (const auto& v : values)
+        if (!v.rule.holds(v.value)) return refuse(*this, v.name, v.value, v.rule.expected);
     _material = material;
     return {};
 }
@@ -90,10 +111,9 @@ Status VolumeAppearance::setAccumulationBits(int bits)
 
 Status VolumeAppearance::setSamplingPeriod(const osg::Vec3d& periodVoxel)
 {
-    for (int i = 0; i < 3; ++i) {
-        if (!(periodVoxel[i] > 0.0) || !std::isfinite(periodVoxel[i]))
-            return refuse(*this, "sampling period", periodVoxel[i], "a positive number of voxels");
-    }
+    for (int i = 0; i < 3; ++i)
+        if (!core::LENGTH.holds(periodVoxel[i]))
+            return refuse(*this, "sampling period", periodVoxel[i], core::LENGTH.expected);
     _sampling.periodVoxel = {periodVoxel.x(), periodVoxel.y(), periodVoxel.z()};
     return {};
 }
@@ -112,24 +132,24 @@ Status VolumeAppearance::setMaximumSamples(int count)
 
 Status VolumeAppearance::setErrorTolerance(double rootMeanSquare)
 {
-    if (!(rootMeanSquare >= 0.0) || !std::isfinite(rootMeanSquare))
-        return refuse(*this, "error tolerance", rootMeanSquare, "0 (off) or a positive number");
+    if (!core::NOT_NEGATIVE.holds(rootMeanSquare))
+        return refuse(*this, "error tolerance", rootMeanSquare, core::NOT_NEGATIVE.expected);
     _errorTolerance = rootMeanSquare;
     return {};
 }
 
 Status VolumeAppearance::setTargetFrameTime(double seconds)
 {
-    if (!(seconds >= 0.0) || !std::isfinite(seconds))
-        return refuse(*this, "target frame time", seconds, "0 (off) or a positive time");
+    if (!core::NOT_NEGATIVE.holds(seconds))
+        return refuse(*this, "target frame time", seconds, core::NOT_NEGATIVE.expected);
     _targetFrameTime = seconds;
     return {};
 }
 
 Status VolumeAppearance::setOpacityUnit(double objectUnits)
 {
-    if (!(objectUnits >= 0.0) || !std::isfinite(objectUnits))
-        return refuse(*this, "opacity unit", objectUnits, "0 (automatic) or a positive length");
+    if (!core::LENGTH_OR_NONE.holds(objectUnits))
+        return refuse(*this, "opacity unit", objectUnits, core::LENGTH_OR_NONE.expected);
     _opacityUnit = objectUnits;
     return {};
 }

@@ -104,10 +104,17 @@ public:
         PRECOMPUTED
     };
 
-    META_Node(osgVolumizer, VolumeAppearance);
+    META_Object(osgVolumizer, VolumeAppearance);
 
     VolumeAppearance();
+    /// Shares voxels and table with `o`. With DEEP_COPY_OBJECTS, and so with DEEP_COPY_ALL, it has
+    /// its own of both, down to the samples: to copy a subgraph and share its volumes, leave that
+    /// flag out (`DEEP_COPY_ALL & ~DEEP_COPY_OBJECTS`). As with all that OSG copies, what several
+    /// appearances share becomes one for each.
     VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
+
+    /// As any group, but that osgUtil::Optimizer takes no transform from above it.
+    void accept(osg::NodeVisitor& visitor) override;
 
     void setVoxels(Voxels* voxels);
     Voxels* getVoxels() const { return _voxels.get(); }
@@ -138,7 +145,8 @@ public:
     void setShading(bool shading) { _shading = shading; }
     bool getShading() const { return _shading; }
     /// colour * (ambient + sum over lights (light's ambient + diffuse * light's diffuse * |n l|)) +
-    /// specular * light's specular * |n h|^shininess; each >= 0. Defaults 0.2, 0.8, 0.3, 32.
+    /// specular * light's specular * |n h|^shininess; each coefficient in [0, 1000] (more
+    /// would overflow 16-bit floats), shininess in [0, 1e7]. Defaults 0.2, 0.8, 0.3, 32.
     struct Material
     {
         double ambient = 0.2, diffuse = 0.8, specular = 0.3, shininess = 32.0;
@@ -164,10 +172,12 @@ public:
     SamplingMode getSamplingMode() const { return _sampling.mode; }
     void setSamplingSpace(SamplingSpace space) { _sampling.space = space; }
     SamplingSpace getSamplingSpace() const { return _sampling.space; }
-    /// Distance between samples along the view, in voxels, per voxel axis, each > 0; default 1.
+    /// Distance between samples along the view, in voxels, per voxel axis; default 1. Each
+    /// from 1e-18 to 1e18, which floats can still square.
     Status setSamplingPeriod(const osg::Vec3d& periodVoxel);
     osg::Vec3d getSamplingPeriod() const;
-    /// Bound on the number of sampling surfaces; >= 1, default 4096.
+    /// Bound on the number of sampling surfaces; >= 1, default 4096. The largest int is none; but
+    /// no view takes more than 65536, whatever period and bound ask for.
     Status setMaximumSamples(int count);
     int getMaximumSamples() const { return _sampling.maximumSamples; }
     const core::SamplingParameters& getSamplingParameters() const { return _sampling; }
@@ -190,7 +200,7 @@ public:
     double getTargetFrameTime() const { return _targetFrameTime; }
 
     /// Thickness, in object units, of the layer that the table's opacity is stated for; 0 (default)
-    /// takes the voxels' mean spacing.
+    /// takes the voxels' mean spacing. Else from 1e-18 to 1e18, which floats can still square.
     Status setOpacityUnit(double objectUnits);
     double getOpacityUnit() const { return _opacityUnit; }
     /// The unit in force.

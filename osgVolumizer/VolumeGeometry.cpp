@@ -3,6 +3,7 @@
 #include "Error.h"
 #include "Voxels.h"
 #include "render/Cull.h"
+#include "render/Flattening.h"
 #include "render/PreparedGeometry.h"
 
 #include <osgUtil/CullVisitor>
@@ -161,7 +162,7 @@ unsigned VolumeGeometry::getModifiedCount() const
 
 void VolumeGeometry::accept(osg::NodeVisitor& visitor)
 {
-    if (!visitor.validNodeMask(*this)) return;
+    if (!visitor.validNodeMask(*this) || render::keepsTransforms(*this, visitor)) return;
     visitor.pushOntoNodePath(this);
     if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
         render::cull(*this, *cullVisitor);

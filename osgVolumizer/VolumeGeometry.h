@@ -19,7 +19,7 @@ class GeometryCache;
 /// coordinates a vertex at p shows the voxel at (p - origin)/spacing.
 ///
 /// A Drawable rather than a plain Node, so that OSG's Optimizer keeps transforms above it, and
-/// never an osg::Geometry, so that it does not flatten them into it.
+/// never an osg::Geometry, so that it does not flatten them into it (see also accept()).
 class OSGVOLUMIZER_EXPORT VolumeGeometry : public osg::Drawable
 {
 public:
@@ -33,6 +33,7 @@ public:
         };
 
     VolumeGeometry();
+    /// Copies hold the same immutable tetrahedra until either is given others.
     VolumeGeometry(const VolumeGeometry& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
     /// The box of all voxels.
@@ -57,6 +58,7 @@ public:
     Status setSlackAngle(double radians);
     double getSlackAngle() const;
 
+    /// A cull registers the volume; osgUtil::Optimizer takes no transform from above it.
     void accept(osg::NodeVisitor& visitor) override;
     osg::BoundingBox computeBoundingBox() const override;
     osg::BoundingSphere computeBound() const override;

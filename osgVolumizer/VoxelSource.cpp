@@ -1,9 +1,10 @@
 #include "VoxelSource.h"
 
+#include "Error.h"
+#include "core/NumberRule.h"
 #include "core/Text.h"
 #include "core/voxels/VoxelData.h"
 
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 
@@ -16,14 +17,14 @@ Status checkAxis(const VoxelSource::Description& d, int axis)
     if (d.size[axis] < 1)
         return {ErrorCode::VALUE_INVALID,
                 "volume size " + core::formatTriple(d.size) + " is below 1 on an axis", axis};
-    if (!(d.spacing[axis] > 0.0 && std::isfinite(d.spacing[axis])))
-        return {ErrorCode::VALUE_INVALID,
-                "voxel spacing " + std::to_string(d.spacing[axis]) + " is not a positive number",
-                axis};
-    if (!std::isfinite(d.origin[axis]))
-        return {ErrorCode::VALUE_INVALID,
-                "volume origin " + std::to_string(d.origin[axis]) + " is not a finite number",
-                axis};
+    const auto refusal = [axis](const char* what, double value, const core::NumberRule& rule) {
+        return Status(ErrorCode::VALUE_INVALID,
+                      what + core::formatNumber(value) + ", expected " + rule.expected, axis);
+    };
+    if (!core::LENGTH.holds(d.spacing[axis]))
+        return refusal("voxel spacing is ", d.spacing[axis], core::LENGTH);
+    if (!core::POSITION.holds(d.origin[axis]))
+        return refusal("volume origin is ", d.origin[axis], core::POSITION);
     return {};
 }
 
@@ -52,8 +53,9 @@ MemoryVoxelSource::MemoryVoxelSource(const MemoryVoxelSource& o, const osg::Copy
 {
     if (!_data || !(op.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)) return;
     _data.reset();
-    if (allocate(o._description, o._description.sizeInBytes()).ok())
-        std::memcpy(_data.get(), o._data.get(), o.sizeInBytes());
+    const Status status = allocate(o._description, o._description.sizeInBytes());
+    if (status.ok()) std::memcpy(_data.get(), o._data.get(), o.sizeInBytes());
+    reportError(status);
 }
 
 Status MemoryVoxelSource::allocate(const Description& description, std::int64_t maximumBytes)

@@ -41,8 +41,8 @@ public:
         glm::dvec3 origin{0.0};  ///< object position of sample (0,0,0)
 
         std::int64_t sizeInBytes() const;
-        /// Refuses a size below 1, an unknown type, components other than 1 and 4, a spacing that
-        /// is not finite and positive, and an origin that is not finite.
+        /// Refuses a size below 1, an unknown type, components other than 1 and 4, a spacing
+        /// outside [1e-18, 1e18], and an origin outside [-1e18, 1e18].
         Status validate() const;
     };
 
@@ -61,6 +61,7 @@ public:
 
 protected:
     VoxelSource() = default;
+    /// A copy with CopyOp::DEEP_COPY_OBJECTS is to share nothing that can be changed.
     VoxelSource(const VoxelSource& o, const osg::CopyOp& op) : osg::Object(o, op) {}
     ~VoxelSource() override = default;
 };
@@ -75,7 +76,8 @@ public:
         static constexpr std::int64_t DEFAULT_MAXIMUM_BYTES = std::int64_t(1) << 36;
 
     MemoryVoxelSource() = default;
-    /// Shares the voxels; a copy of its own with CopyOp::DEEP_COPY_OBJECTS.
+    /// Shares the voxels; a copy of its own with CopyOp::DEEP_COPY_OBJECTS. Where there is no
+    /// memory for that, it is reported, and the copy has none.
     MemoryVoxelSource(const MemoryVoxelSource& o,
                       const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 

@@ -1,6 +1,8 @@
 #include "Voxels.h"
 
 #include "Error.h"
+#include "core/NumberRule.h"
+#include "core/Text.h"
 #include "core/voxels/VoxelData.h"
 
 #include <algorithm>
@@ -22,14 +24,21 @@ struct Voxels::Brick
 
 namespace {
 
-bool finite(const osg::Vec3d& v)
+bool holds(const core::NumberRule& rule, const osg::Vec3d& v)
 {
-    return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+    return rule.holds(v.x()) && rule.holds(v.y()) && rule.holds(v.z());
 }
 
-std::string text(const osg::Vec3d& v)
+Status refusal(const char* what, const osg::Vec3d& v, const core::NumberRule& rule)
 {
-    return std::to_string(v.x()) + "," + std::to_string(v.y()) + "," + std::to_string(v.z());
+    return {ErrorCode::VALUE_INVALID, what + core::formatTriple(glm::dvec3(v.x(), v.y(), v.z())) +
+                                          ", expected each to be " + rule.expected};
+}
+
+unsigned nextLayoutCount()
+{
+    static std::atomic<unsigned> last{0};
+    return ++last;
 }
 
 /// The component that lookup tables, ranges and emptiness refer to.
@@ -40,17 +49,19 @@ int significantComponent(const VoxelSource::Description& d)
 
 } // namespace
 
-Voxels::Voxels() = default;
+Voxels::Voxels() : _layoutCount(nextLayoutCount()) {}
 
-Voxels::Voxels(VoxelSource* source)
+Voxels::Voxels(VoxelSource* source) : Voxels()
 {
     reportError(setSource(source));
 }
 
 Voxels::Voxels(const Voxels& o, const osg::CopyOp& op)
-    : osg::Object(o, op), _source(o._source), _description(o._description),
-      _brickSize(o._brickSize), _overlap(o._overlap), _layout(o._layout), _fileName(o._fileName),
-      _fileOptions(o._fileOptions)
+    : osg::Object(o, op),
+      _source(dynamic_cast<VoxelSource*>(op(static_cast<const osg::Object*>(o._source.get())))),
+      _description(o._description), _brickSize(o._brickSize), _overlap(o._overlap),
+      _layout(o._layout), _fileName(o._fileName), _fileOptions(o._fileOptions),
+      _layoutCount(nextLayoutCount())
 {
     std::lock_guard<std::mutex> lock(o._rangeMutex);
     _explicitRange = o._explicitRange;
@@ -96,11 +107,9 @@ bool Voxels::valid() const
 
 Status Voxels::setSpacing(const osg::Vec3d& spacing)
 {
-    if (!finite(spacing) || !(spacing.x() > 0.0 && spacing.y() > 0.0 && spacing.z() > 0.0))
-        return {ErrorCode::VALUE_INVALID,
-                "voxel spacing " + text(spacing) + " is not positive and finite"};
+    if (!holds(core::LENGTH, spacing)) return refusal("voxel spacing is ", spacing, core::LENGTH);
     _description.spacing = glm::dvec3(spacing.x(), spacing.y(), spacing.z());
-    ++_layoutCount;
+    _layoutCount = nextLayoutCount();
     return {};
 }
 
@@ -111,10 +120,9 @@ osg::Vec3d Voxels::getSpacing() const
 
 Status Voxels::setOrigin(const osg::Vec3d& origin)
 {
-    if (!finite(origin))
-        return {ErrorCode::VALUE_INVALID, "volume origin " + text(origin) + " is not finite"};
+    if (!holds(core::POSITION, origin)) return refusal("volume origin is ", origin, core::POSITION);
     _description.origin = glm::dvec3(origin.x(), origin.y(), origin.z());
-    ++_layoutCount;
+    _layoutCount = nextLayoutCount();
     return {};
 }
 
@@ -130,14 +138,15 @@ double Voxels::getMeanSpacing() const
 
 Status Voxels::setRange(const osg::Vec2d& range)
 {
-    if (!(range.x() < range.y()) || !std::isfinite(range.y() - range.x()))
-        return {ErrorCode::VALUE_INVALID, "value range " + std::to_string(range.x()) + "," +
-                                              std::to_string(range.y()) +
-                                              " does not rise, or is not finite"};
+    if (!core::RANGE_WIDTH.holds(range.y() - range.x()))
+        return {ErrorCode::VALUE_INVALID, "value range is " + core::formatNumber(range.x()) + "," +
+                                              core::formatNumber(range.y()) +
+                                              ", expected it to rise, over " +
+                                              core::RANGE_WIDTH.expected};
     std::lock_guard<std::mutex> lock(_rangeMutex);
     _range = range;
     _rangeKnown = _explicitRange = true;
-    ++_layoutCount;
+    _layoutCount = nextLayoutCount();
     return {};
 }
 
@@ -177,7 +186,7 @@ void Voxels::findRange() const
     }
     // A single value still needs two ends, and no value at all any two.
     if (found.empty()) found = {0.0, 1.0};
-    if (!(found.low < found.high))
+    if (!(found.high - found.low >= core::RANGE_WIDTH.low))
         found.high = found.low + std::max(1.0, std::fabs(found.low) * 1e-6);
     if (!std::isfinite(found.high - found.low)) found = {0.5 * found.low, 0.5 * found.high};
     _range.set(found.low, found.high);
@@ -213,7 +222,7 @@ void Voxels::forgetBricks()
     std::lock_guard<std::mutex> lock(_mutex);
     _bricks.clear();
     _allModified = ++_lastModified;
-    ++_layoutCount;
+    _layoutCount = nextLayoutCount();
 }
 
 void Voxels::dirty(std::int64_t brick)

@@ -28,6 +28,8 @@ public:
 
         Voxels();
     explicit Voxels(VoxelSource* source);
+    /// Shares the source with `o`; a copy of its own with CopyOp::DEEP_COPY_OBJECTS. Bricks that
+    /// are resident, and textures, are never shared.
     Voxels(const Voxels& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
     /// Replaces the source, and takes size, type, spacing, origin and range from it.
@@ -40,24 +42,27 @@ public:
     VoxelType getType() const { return _description.type; }
     int getComponents() const { return _description.components; }
 
-    /// Object units between samples, each > 0.
+    /// Object units between samples, each from 1e-18 to 1e18, which floats can still square.
     Status setSpacing(const osg::Vec3d& spacing);
     osg::Vec3d getSpacing() const;
-    /// Object position of sample (0,0,0).
+    /// Object position of sample (0,0,0), each within 1e18.
     Status setOrigin(const osg::Vec3d& origin);
     osg::Vec3d getOrigin() const;
     /// Mean of the three spacings: the default opacity unit.
     double getMeanSpacing() const;
 
-    /// Data values at the two ends of a lookup table's domain; low < high. Default: the type's
+    /// Data values at the two ends of a lookup table's domain, at least 1e-30 apart, which floats
+    /// can still divide by. Default: the type's
     /// range for 8 bit and RGBA, else the lowest and highest value found in the data, once, on the
     /// first call of getRange(); that reads all bricks where the source does not know it.
     Status setRange(const osg::Vec2d& range);
     osg::Vec2d getRange() const;
     bool hasExplicitRange() const;
 
-    /// Largest brick, in samples per axis, each above the overlap; default 256^3. Drops resident
-    /// bricks. To be called, as every setter here, between frames.
+    /// Largest brick, in samples per axis, each above the overlap; default 256^3. Refused (as by
+    /// setOverlap() and setSource()) where core::BrickLayout is: too many bricks, or too many
+    /// samples held twice. Drops resident bricks. To be called, as every setter here, between
+    /// frames.
     Status setBrickSize(const glm::ivec3& samples);
     glm::ivec3 getBrickSize() const { return _brickSize; }
     /// Samples shared by neighbours: 1 for linear filtering, 3 for cubic.
@@ -83,7 +88,8 @@ public:
     void dirty(std::int64_t brick = -1);
     /// Grows with every change to a brick's data; compared by texture caches. Thread safe.
     unsigned getModifiedCount(std::int64_t brick) const;
-    /// Changes whenever layout, type, range, spacing or origin do. Thread safe.
+    /// Changes whenever layout, type, range, spacing or origin do, to a number that no other voxels
+    /// have had. Thread safe.
     unsigned getLayoutCount() const { return _layoutCount; }
 
     /// How a scene file refers to the voxels: a name for readVoxels(), with its options. Empty:
@@ -148,7 +154,7 @@ private:
     mutable osg::ref_ptr<RenderData> _renderData;
 
     mutable std::atomic<std::uint64_t> _readCount{0};
-    std::atomic<unsigned> _layoutCount{0};
+    std::atomic<unsigned> _layoutCount;
 };
 
 } // namespace osgVolumizer

@@ -1,5 +1,6 @@
 #include "WriteVoxels.h"
 
+#include "core/RegularFile.h"
 #include "core/voxels/VoxelData.h"
 
 #include <OpenImageIO/imageio.h>
@@ -126,6 +127,7 @@ Status writeSlices(OIIO::ImageOutput& out, const VoxelSource& source, const std:
 Status writeVoxels(const VoxelSource& source, const std::string& fileName, const Progress& progress)
 {
     if (Status status = source.describe().validate(); !status.ok()) return status;
+    if (Status status = core::requireRegularTarget(fileName); !status.ok()) return status;
     try {
         OIIO::geterror();
         const auto out = OIIO::ImageOutput::create(fileName);

@@ -1,6 +1,7 @@
 #include "DicomHeader.h"
 #include "VoxelFiles.h"
 
+#include "../core/RegularFile.h"
 #include "../core/Text.h"
 #include "../core/voxels/VoxelData.h"
 
@@ -118,6 +119,7 @@ Result<std::vector<DicomFile>> readHeaders(const std::vector<std::string>& paths
 {
     std::vector<DicomFile> files;
     for (const std::string& path : paths) {
+        if (Status status = core::requireRegularFile(path); !status.ok()) return status;
         std::ifstream stream(path, std::ios::binary);
         const Result<DicomHeader> header = readDicomHeader(stream, path);
         if (!header.ok()) return header.status;
@@ -136,6 +138,7 @@ Result<std::vector<DicomFile>> readHeaders(const std::vector<std::string>& paths
 
 bool isDicomFile(const std::string& path)
 {
+    if (!core::requireRegularFile(path).ok()) return false;
     std::ifstream stream(path, std::ios::binary);
     return stream && isDicom(stream);
 }

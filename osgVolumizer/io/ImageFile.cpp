@@ -2,6 +2,7 @@
 
 #include "TiffDepth.h"
 
+#include "../core/RegularFile.h"
 #include "../core/Text.h"
 #include "../core/voxels/VoxelData.h"
 #include "../core/voxels/VoxelDispatch.h"
@@ -118,6 +119,7 @@ void toVoxels(const void* pixels, const PixelFormat& format, std::size_t count, 
 Status ImageFile::open(const std::string& path)
 {
     _path = path;
+    if (Status status = core::requireRegularFile(path); !status.ok()) return status;
     try {
         OIIO::ImageSpec config;
         config.attribute("oiio:UnassociatedAlpha", 1); // voxels are as they are stored

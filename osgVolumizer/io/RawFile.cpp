@@ -1,5 +1,6 @@
 #include "VoxelFiles.h"
 
+#include "../core/RegularFile.h"
 #include "../core/Text.h"
 #include "../core/voxels/VoxelData.h"
 
@@ -43,6 +44,7 @@ Status checkFileSize(const RawName& raw, const std::string& path)
 
 Result<Source> readRaw(const RawName& raw, const std::string& path, const Progress& progress)
 {
+    if (Status status = core::requireRegularFile(path); !status.ok()) return status;
     if (Status status = checkFileSize(raw, path); !status.ok()) return status;
     VoxelSource::Description description;
     description.size = raw.size;

@@ -13,12 +13,17 @@
 #include <osg/Timer>
 #include <osgUtil/CullVisitor>
 
+#include <algorithm>
 #include <cmath>
 
 namespace osgVolumizer {
 namespace render {
 
 namespace {
+
+// Surfaces, and steps of a ray, whatever is asked for: nobody would wait for more, and floats still
+// tell the ends of steps apart.
+constexpr int MOST_SAMPLES = 1 << 16;
 
 const VolumeAppearance* nearestAppearance(const osg::NodePath& path)
 {
@@ -135,6 +140,7 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     if (!volume->prepared) return;
     if (!voxels && volume->prepared->tetras.vertices.format().colorSize == 0) return;
     volume->sampling = appearance->getSamplingParameters();
+    volume->sampling.maximumSamples = std::min(volume->sampling.maximumSamples, MOST_SAMPLES);
     volume->viewId = viewIdOf(visitor);
     if (voxels && !volume->prepared->voxelFrame) {
         const osg::Vec3d s = voxels->getSpacing();

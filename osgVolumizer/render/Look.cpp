@@ -154,6 +154,23 @@ glm::dvec3 pixelMargin(const glm::dmat4& toEye, const core::Box3d& bounds,
     return std::isfinite(margin.x + margin.y + margin.z) ? margin : glm::dvec3(0.0);
 }
 
+// The nearest number that a float can be.
+float inFloats(double v)
+{
+    constexpr double largest = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(v, -largest, largest));
+}
+
+// Opacity units per frame unit, such that lengths in them are floats: beyond these bounds nothing
+// shows any more, or all is opaque.
+glm::dmat3 frameToUnits(const glm::dmat3& frameToObject, double unit)
+{
+    constexpr double largest = 1e18;
+    const double longest = std::max({glm::length(frameToObject[0]), glm::length(frameToObject[1]),
+                                     glm::length(frameToObject[2])});
+    return frameToObject * (longest / unit > largest ? largest / longest : 1.0 / unit);
+}
+
 // How the shader gets a colour out of a brick.
 void setInterpolation(const VolumeAppearance& appearance, const TableTexture& table,
                       double voxelsPerSample, ProgramFeatures& features)
@@ -196,7 +213,7 @@ void setValues(const VolumeAppearance& appearance, const Voxels& voxels, VolumeL
     look.valueToEntry = glm::vec2(fraction * (look.table.count - 1.0));
     look.texelToFraction = fraction.x;
     const double iso = (appearance.getIsoValue() - range.x()) / (range.y() - range.x());
-    look.isoTexel = static_cast<float>((iso - fraction.y) / fraction.x);
+    look.isoTexel = inFloats((iso - fraction.y) / fraction.x);
     const VolumeAppearance::Material& m = appearance.getMaterial();
     look.material = glm::vec4(m.ambient, m.diffuse, m.specular, m.shininess);
     if (look.features.gradientTexture) look.gradientDecode = gradientDecode(voxels);
@@ -239,7 +256,8 @@ std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTe
     setFeatures(appearance, prepared, features);
     features.spherical = !features.slab && volume.sampling.mode == SamplingMode::SPHERICAL;
     if (appearance.getVoxels()) setValues(appearance, *appearance.getVoxels(), *look);
-    look->frameToUnits = glm::dmat3(prepared.frameToObject) / appearance.getEffectiveOpacityUnit();
+    look->frameToUnits =
+        frameToUnits(glm::dmat3(prepared.frameToObject), appearance.getEffectiveOpacityUnit());
     look->center = prepared.regionBox.center();
     const glm::dmat4 toEye = toGlm(*volume.frameToEye);
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;

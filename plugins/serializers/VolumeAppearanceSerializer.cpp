@@ -3,10 +3,11 @@
 #include "Report.h"
 
 #include <osgVolumizer/VolumeAppearance.h>
+#include <osgVolumizer/core/NumberRule.h>
+#include <osgVolumizer/core/Text.h>
 
 #include <osgDB/ObjectWrapper>
 
-#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -58,28 +59,32 @@ Property flag(const char* name)
             }};
 }
 
-/// Finite numbers of at least `low`, or above it.
-Status getNumbers(const Record& record, const char* name, std::size_t count, double low, bool above,
-                  Field::Doubles& values)
+/// A value of a field as a rule wants it; setters would say less of where it is.
+Status checkNumber(const char* name, std::size_t index, double value, const core::NumberRule& rule)
 {
-    const Status status = record.get(name, count, values);
+    if (rule.holds(value)) return Status();
+    return Status(ErrorCode::VALUE_INVALID,
+                  std::string("field ") + name + ", value " + std::to_string(index) + " is " +
+                      core::formatNumber(value) + ", expected " + rule.expected,
+                  std::int64_t(index));
+}
+
+Status getNumbers(const Record& record, const char* name, std::size_t count,
+                  const core::NumberRule& rule, Field::Doubles& values)
+{
+    Status status = record.get(name, count, values);
     for (std::size_t i = 0; i < count && status.ok(); ++i)
-        if (!std::isfinite(values[i]) || values[i] < low || (above && values[i] == low))
-            return Status(ErrorCode::VALUE_INVALID,
-                          std::string("field ") + name + ", value " + std::to_string(i) + " is " +
-                              std::to_string(values[i]),
-                          std::int64_t(i));
+        status = checkNumber(name, i, values[i], rule);
     return status;
 }
 
-/// One number of at least `low`, or above it.
 template <auto Get, auto Set>
-Property number(const char* name, double low, bool above = false)
+Property number(const char* name, const core::NumberRule& rule)
 {
     return {name, [](const VolumeAppearance& a) { return Field::Doubles{(a.*Get)()}; },
-            [name, low, above](const Record& record, VolumeAppearance& a) {
+            [name, &rule](const Record& record, VolumeAppearance& a) {
                 Field::Doubles value;
-                const Status status = getNumbers(record, name, 1, low, above, value);
+                const Status status = getNumbers(record, name, 1, rule, value);
                 return status.ok() ? (a.*Set)(value[0]) : status;
             }};
 }
@@ -105,7 +110,7 @@ Property samplingPeriod()
             },
             [](const Record& record, VolumeAppearance& a) {
                 Field::Doubles p;
-                const Status status = getNumbers(record, "SamplingPeriod", 3, 0.0, true, p);
+                const Status status = getNumbers(record, "SamplingPeriod", 3, core::LENGTH, p);
                 return status.ok() ? a.setSamplingPeriod(osg::Vec3d(p[0], p[1], p[2])) : status;
             }};
 }
@@ -119,7 +124,10 @@ Property material()
             },
             [](const Record& record, VolumeAppearance& a) {
                 Field::Doubles m;
-                const Status status = getNumbers(record, "Material", 4, 0.0, false, m);
+                Status status = record.get("Material", 4, m);
+                for (std::size_t i = 0; i < 4 && status.ok(); ++i)
+                    status = checkNumber("Material", i, m[i],
+                                         i < 3 ? core::COEFFICIENT : core::SHININESS);
                 return status.ok() ? a.setMaterial({m[0], m[1], m[2], m[3]}) : status;
             }};
 }
@@ -163,19 +171,19 @@ const std::vector<Property>& properties()
         choice<&A::getSamplingSpace, &A::setSamplingSpace>("SamplingSpace", spaceNames),
         samplingPeriod(),
         integer<&A::getMaximumSamples, &A::setMaximumSamples>("MaximumSamples"),
-        number<&A::getOpacityUnit, &A::setOpacityUnit>("OpacityUnit", 0.0),
+        number<&A::getOpacityUnit, &A::setOpacityUnit>("OpacityUnit", core::LENGTH_OR_NONE),
         sinceVersion(
             3, choice<&A::getRayFunction, &A::setRayFunction>("RayFunction", rayFunctionNames)),
-        sinceVersion(3, number<&A::getIsoValue, &A::setIsoValue>("IsoValue", -INFINITY)),
+        sinceVersion(3, number<&A::getIsoValue, &A::setIsoValue>("IsoValue", core::FINITE)),
         sinceVersion(3, flag<&A::getShading, &A::setShading>("Shading")),
         sinceVersion(3, material()),
         sinceVersion(3, choice<&A::getGradients, &A::setGradients>("Gradients", gradientNames)),
         sinceVersion(3, accumulationBits()),
         sinceVersion(4, choice<&A::getCombineRule, &A::setCombineRule>("CombineRule", ruleNames)),
-        sinceVersion(3,
-                     number<&A::getErrorTolerance, &A::setErrorTolerance>("ErrorTolerance", 0.0)),
-        sinceVersion(
-            3, number<&A::getTargetFrameTime, &A::setTargetFrameTime>("TargetFrameTime", 0.0)),
+        sinceVersion(3, number<&A::getErrorTolerance, &A::setErrorTolerance>("ErrorTolerance",
+                                                                             core::NOT_NEGATIVE)),
+        sinceVersion(3, number<&A::getTargetFrameTime, &A::setTargetFrameTime>("TargetFrameTime",
+                                                                               core::NOT_NEGATIVE)),
     };
     return list;
 }

@@ -54,15 +54,11 @@ Status readFile(const Record& record, const osgDB::Options* options, Voxels& vox
     return status;
 }
 
-Status apply(const Record& record, const osgDB::Options* options, Voxels& voxels)
+Status readBrickSizes(const Record& record, Voxels& voxels)
 {
-    Status status;
-    if (record.has("FileName")) status = readFile(record, options, voxels);
-    if (!status.ok()) return status;
     Field::Integers size;
-    Field::Doubles values;
     int overlap = 1;
-    status = record.get("BrickSize", 3, size);
+    Status status = record.get("BrickSize", 3, size);
     for (int i = 0; i < 3 && status.ok(); ++i)
         if (size[std::size_t(i)] < 1 || size[std::size_t(i)] > 2147483647)
             status = Status(ErrorCode::VALUE_INVALID,
@@ -74,14 +70,42 @@ Status apply(const Record& record, const osgDB::Options* options, Voxels& voxels
     if (status.ok() && overlap < voxels.getOverlap()) status = voxels.setOverlap(overlap);
     if (status.ok())
         status = voxels.setBrickSize(glm::ivec3(int(size[0]), int(size[1]), int(size[2])));
-    if (status.ok()) status = voxels.setOverlap(overlap);
-    if (status.ok()) status = record.get("Spacing", 3, values);
-    if (status.ok()) status = voxels.setSpacing(vector(values));
-    if (status.ok()) status = record.get("Origin", 3, values);
-    if (status.ok()) status = voxels.setOrigin(vector(values));
-    if (!status.ok() || !record.has("Range")) return status;
-    status = record.get("Range", 2, values);
+    return status.ok() ? voxels.setOverlap(overlap) : status;
+}
+
+Status readSpacing(const Record& record, Voxels& voxels)
+{
+    Field::Doubles values;
+    const Status status = record.get("Spacing", 3, values);
+    return status.ok() ? voxels.setSpacing(vector(values)) : status;
+}
+
+Status readOrigin(const Record& record, Voxels& voxels)
+{
+    Field::Doubles values;
+    const Status status = record.get("Origin", 3, values);
+    return status.ok() ? voxels.setOrigin(vector(values)) : status;
+}
+
+Status readRange(const Record& record, Voxels& voxels)
+{
+    if (!record.has("Range")) return Status();
+    Field::Doubles values;
+    const Status status = record.get("Range", 2, values);
     return status.ok() ? voxels.setRange(osg::Vec2d(values[0], values[1])) : status;
+}
+
+// Each field by itself, as of an appearance; without the file there is nothing to apply them to.
+Status apply(const Record& record, const osgDB::Options* options, Voxels& voxels)
+{
+    Status status;
+    if (record.has("FileName")) status = readFile(record, options, voxels);
+    if (!status.ok()) return status;
+    for (const auto& read : {readBrickSizes, readSpacing, readOrigin, readRange}) {
+        const Status set = read(record, voxels);
+        if (status.ok()) status = set;
+    }
+    return status;
 }
 
 bool checkBricks(const Voxels&)

@@ -2,8 +2,9 @@
 
 #include "LegacyCells.h"
 
+#include <osgVolumizer/core/RegularFile.h>
+
 #include <osgDB/FileNameUtils>
-#include <osgDB/FileUtils>
 
 #include <vtkCallbackCommand.h>
 #include <vtkCommand.h>
@@ -55,8 +56,8 @@ Result<vtkSmartPointer<vtkUnstructuredGrid>> readGrid(const std::string& path)
     const auto unreadable = [&path](const std::string& why) {
         return Status(ErrorCode::FILE_UNREADABLE, "File '" + path + "': " + why + ".");
     };
-    if (osgDB::fileType(path) != osgDB::REGULAR_FILE)
-        return Status(ErrorCode::FILE_NOT_FOUND, "File '" + path + "' is not there.");
+    if (const Status status = core::requireRegularFile(path); !status)
+        return Status(status.code, "File " + status.text + ".");
     try {
         std::string error;
         vtkNew<vtkCallbackCommand> keep;

@@ -86,6 +86,44 @@ TEST(BrickLayout, IndexAndCoordinatesAreInverse)
         ASSERT_EQ(i, layout->index(layout->coordinates(i)));
 }
 
+TEST(BrickLayout, RefusesTooManyBricks)
+{
+    // 1.3 million bricks of a scan of a head, and fewer that are as good.
+    const Status many = BrickLayout::create({128, 128, 84}, {2, 2, 2}).status;
+    EXPECT_EQ(ErrorCode::TOO_LARGE, many.code);
+    EXPECT_NE(std::string::npos, many.text.find("1338707 bricks")) << many.text;
+    EXPECT_TRUE(BrickLayout::create({128, 128, 84}, {4, 4, 4}).ok());
+    EXPECT_TRUE(BrickLayout::create({1024, 1024, 1024}, {32, 32, 32}, 3).ok());
+    EXPECT_TRUE(BrickLayout::create({4000, 4000, 4000}, {64, 64, 64}, 1).ok());
+    EXPECT_TRUE(BrickLayout::create({32000, 32000, 32000}, {512, 512, 512}, 5).ok());
+}
+
+TEST(BrickLayout, RefusesBricksThatShareNearlyEverything)
+{
+    const Status shared = BrickLayout::create({128, 128, 84}, {64, 64, 64}, 63).status;
+    EXPECT_EQ(ErrorCode::TOO_LARGE, shared.code);
+    EXPECT_NE(std::string::npos, shared.text.find("overlap 63")) << shared.text;
+    EXPECT_FALSE(BrickLayout::create({512, 512, 512}, {64, 64, 64}, 50).ok());
+    // Cubic, lit, in the smallest bricks that make sense.
+    EXPECT_TRUE(BrickLayout::create({1024, 1024, 1024}, {32, 32, 32}, 5).ok());
+    EXPECT_TRUE(BrickLayout::create({512, 512, 512}, {16, 16, 16}, 5).ok());
+    // A small volume may be cut in any way.
+    EXPECT_TRUE(BrickLayout::create({20, 20, 20}, {8, 8, 8}, 7).ok());
+}
+
+// Neither bound is off where the product of three axes has more bits than an integer.
+TEST(BrickLayout, RefusesWhatOverflows)
+{
+    const int huge = 2147483647;
+    for (const int brick : {2, 1000, huge - 1})
+        for (const int overlap : {1, brick - 1}) {
+            const Result<BrickLayout> layout =
+                BrickLayout::create({huge, huge, huge}, glm::ivec3(brick), overlap);
+            EXPECT_EQ(layout.ok(), brick == huge - 1) << brick << " " << overlap;
+        }
+    EXPECT_TRUE(BrickLayout::create({huge, huge, huge}, glm::ivec3(huge)).ok());
+}
+
 TEST(BrickLayout, RefusesWhatHasNoMeaning)
 {
     EXPECT_EQ(ErrorCode::VALUE_INVALID, BrickLayout::create({8, 0, 8}, {4, 4, 4}).status.code);

@@ -8,6 +8,7 @@
 #include <osgVolumizer/core/geometry/TetraMesh.h>
 
 #include <support/GLTest.h>
+#include <support/Watchdog.h>
 
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
@@ -18,6 +19,7 @@
 #include <fstream>
 #include <string>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 using namespace osgVolumizer;
@@ -194,6 +196,26 @@ TEST(VtkReader, ColoursAreCarriedAsTheyAre)
         EXPECT_EQ(r.set->vertices.format().colorSize, 4);
         EXPECT_NEAR(r.set->vertices.record(0)[1], 1.0 / 255.0, 1e-12);
         EXPECT_NEAR(r.set->vertices.record(0)[3], components == 3 ? 1.0 : 1.0 / 255.0, 1e-12);
+    }
+}
+
+TEST(VtkReader, PipesAndDevicesAreRefusedAtOnce)
+{
+    const support::Watchdog watchdog;
+    for (const std::string extension : {"vtk", "vtu"}) {
+        const std::string pipe = testing::TempDir() + "VtkReaderTest.pipe." + extension;
+        const std::string zero = testing::TempDir() + "VtkReaderTest.zero." + extension;
+        for (const std::string& name : {pipe, zero})
+            std::filesystem::remove(name);
+        ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+        std::filesystem::create_symlink("/dev/zero", zero);
+        for (const std::string& name : {pipe, zero}) {
+            clearLastError();
+            EXPECT_FALSE(osgDB::readRefNodeFile(name).valid());
+            EXPECT_NE(getLastError().text.find("is no regular file"), std::string::npos)
+                << getLastError().text;
+            std::filesystem::remove(name);
+        }
     }
 }
 

@@ -8,6 +8,9 @@ namespace core {
 
 namespace {
 
+/// Where the image of a point is held, so that it is a number.
+constexpr double FARTHEST = 1e300;
+
 Status checkPoint(const TransferFunction::Point& point, std::int64_t index)
 {
     const std::string where = "transfer function point " + std::to_string(index);
@@ -91,7 +94,7 @@ TransferFunction TransferFunction::mapped(double scale, double offset) const
 {
     TransferFunction function(*this);
     for (Point& p : function._points)
-        p.value = scale * p.value + offset;
+        p.value = std::clamp(scale * p.value + offset, -FARTHEST, FARTHEST);
     return function;
 }
 

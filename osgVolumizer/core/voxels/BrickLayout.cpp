@@ -3,6 +3,7 @@
 #include "../Text.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace osgVolumizer {
 namespace core {
@@ -25,6 +26,42 @@ std::int64_t bricksOnAxis(std::int64_t size, std::int64_t brick, int overlap, Pa
     const std::int64_t whole = (size - overlap) / step;
     const bool rest = (size - overlap) % step != 0;
     return rest && partial != PartialBricks::TRUNCATE ? whole + 1 : whole;
+}
+
+/// Samples of all bricks along an axis.
+double samplesOnAxis(const BrickLayout& layout, int axis)
+{
+    // One brick after another, each but the first without what it shares.
+    const double between = layout.count()[axis] - 1.0;
+    const double all = std::min<double>(layout.size()[axis] + between * layout.overlap(),
+                                        (between + 1.0) * layout.brickSize()[axis]);
+    return layout.partialBricks() == PartialBricks::AVERAGE_UP
+               ? (between + 1.0) * layout.brickSize()[axis]
+               : all;
+}
+
+/// In floating point: the products of three sizes need up to 93 bits.
+Status checkExpense(const BrickLayout& layout, const glm::ivec3& brickSize)
+{
+    double bricks = 1.0, volume = 1.0, held = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        bricks *= layout.count()[axis];
+        volume *= layout.size()[axis];
+        held *= samplesOnAxis(layout, axis);
+    }
+    const std::string what = "volume size " + formatTriple(layout.size()) + " in bricks of " +
+                             formatTriple(brickSize) + " with overlap " +
+                             std::to_string(layout.overlap());
+    if (bricks > static_cast<double>(BrickLayout::MAXIMUM_BRICKS))
+        return {ErrorCode::TOO_LARGE, what + " makes " + formatNumber(bricks) +
+                                          " bricks, more than " +
+                                          std::to_string(BrickLayout::MAXIMUM_BRICKS)};
+    if (held > BrickLayout::FREE_SAMPLES && held > BrickLayout::MAXIMUM_REPETITION * volume)
+        return {ErrorCode::TOO_LARGE, what + " makes bricks that hold " +
+                                          formatNumber(std::ceil(held / volume)) +
+                                          " times its samples, more than " +
+                                          formatNumber(BrickLayout::MAXIMUM_REPETITION) + " times"};
+    return {};
 }
 
 } // namespace
@@ -57,12 +94,7 @@ Result<BrickLayout> BrickLayout::create(const glm::ivec3& size, const glm::ivec3
     layout._size = size;
     layout._overlap = overlap;
     layout._partial = partial;
-    constexpr std::int64_t maximum = std::int64_t(1) << 31;
-    const std::int64_t slice = std::int64_t(layout._count.x) * layout._count.y; // below 2^62
-    if (slice > maximum || slice * layout._count.z > maximum)
-        return Status(ErrorCode::TOO_LARGE, "volume size " + formatTriple(size) + " in bricks of " +
-                                                formatTriple(brickSize) +
-                                                " makes more than 2^31 bricks");
+    if (Status status = checkExpense(layout, brickSize); !status.ok()) return status;
     return layout;
 }
 

@@ -30,10 +30,22 @@ enum class PartialBricks : int
 class OSGVOLUMIZER_CORE_EXPORT BrickLayout
 {
 public:
+    /// Each brick costs some 2 kB, and time in every frame, whether or not it shows anything: half
+    /// a gigabyte for so many. A volume of 4096^3 samples in bricks of 64^3 is within it.
+    static constexpr std::int64_t MAXIMUM_BRICKS = std::int64_t(1) << 18;
+    /// Twice the samples on each axis: bricks twice as large as their overlap. What is filtered by
+    /// cubics and lit, and so needs overlap 5, may be in bricks of 10^3.
+    static constexpr double MAXIMUM_REPETITION = 8.0;
+    /// 16 MiB as floats.
+    static constexpr double FREE_SAMPLES = 1 << 22;
+
     BrickLayout() = default;
     /// \param size samples of the volume per axis, each >= 1
     /// \param brickSize samples of a brick per axis, each > overlap; larger than `size` means one
-    /// brick Refuses (VALUE_INVALID, TOO_LARGE) anything else, and more than 2^31 bricks.
+    /// brick
+    /// Refuses anything else (VALUE_INVALID); more than MAXIMUM_BRICKS, and bricks that by their
+    /// overlap hold more than MAXIMUM_REPETITION times the volume's samples, unless those are no
+    /// more than FREE_SAMPLES (TOO_LARGE).
     static Result<BrickLayout> create(const glm::ivec3& size, const glm::ivec3& brickSize,
                                       int overlap = 1,
                                       PartialBricks partial = PartialBricks::SHRINK_TO_FIT);
