@@ -1,6 +1,7 @@
 #include "Stage.h"
 
 #include <render/Volumes.h>
+#include <support/Compare.h>
 #include <support/Shapes.h>
 
 #include <osg/ColorMask>
@@ -10,6 +11,7 @@
 #include <osg/Texture2D>
 
 #include <cmath>
+#include <limits>
 
 namespace osgVolumizer {
 namespace test {
@@ -143,14 +145,6 @@ RenderOptions view()
     return options;
 }
 
-FramebufferFormat formatOf(Target target)
-{
-    FramebufferFormat format;
-    if (target != Target::ANY) format.colors = {GL_RGBA8};
-    if (target == Target::SAMPLES) format.samples = 4;
-    return format;
-}
-
 // What looks like a box, or a layer of it.
 void addLayer(osg::Group& group, float z, const Colors& colors)
 {
@@ -174,6 +168,26 @@ osg::Vec4 halved(const osg::Vec4& color)
 }
 
 } // namespace
+
+std::string nameOf(Content content)
+{
+    static const char* const names[] = {"Slabs",   "Slices",      "Maximum",
+                                        "Surface", "BareSurface", "Overlap"};
+    return names[static_cast<int>(content)];
+}
+
+double difference(const FramebufferContents& a, const FramebufferContents& b)
+{
+    constexpr double INFINITE = std::numeric_limits<double>::infinity();
+    if (a.empty() || b.empty() || a.stencil != b.stencil) return INFINITE;
+    const FloatImage &p = a.colors.front(), &q = b.colors.front();
+    support::Mask all{p.width, p.height, {}};
+    all.set.assign(p.pixels.size(), 1);
+    double largest = support::compare(p, q, all).maximum;
+    for (std::size_t i = 0; i < p.depth.size(); ++i)
+        largest = std::max(largest, std::abs(double(p.depth[i]) - double(q.depth[i])));
+    return largest;
+}
 
 struct Stage::Version
 {
@@ -199,8 +213,8 @@ struct Stage::Version
     }
 };
 
-Stage::Stage(Content content, Target target)
-    : _content(content), _target(target), _volume(new Version), _geometry(new Version)
+Stage::Stage(Content content, const FramebufferFormat& format)
+    : _content(content), _format(format), _volume(new Version), _geometry(new Version)
 {
     _volume->volumes->addChild(volumes());
     makeMeshes();
@@ -243,12 +257,46 @@ void Stage::makeMeshes()
         addLayer(*_geometry->volumes, z, {halved(colors.corner), halved(colors.rest)});
 }
 
-FramebufferContents Stage::show(std::unique_ptr<Version>& version)
+FramebufferContents Stage::show(Version& version)
 {
-    if (!version->renderer)
-        version->renderer =
-            std::make_unique<FramebufferRenderer>(version->root, view(), formatOf(_target));
-    return version->renderer->render();
+    if (!version.renderer)
+        version.renderer = std::make_unique<FramebufferRenderer>(version.root, view(), _format);
+    osg::Camera& camera = version.renderer->camera();
+    camera.setViewport(0, 0, SIZE, SIZE);
+    camera.setStateSet(new osg::StateSet);
+    camera.setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+    camera.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    camera.setProjectionMatrix(view().projection);
+    if (_arrangement.camera) _arrangement.camera(camera);
+    return version.renderer->render();
+}
+
+void Stage::setFormat(const FramebufferFormat& format)
+{
+    _format = format;
+    for (Version* version : {_volume.get(), _geometry.get()})
+        if (version->renderer) version->renderer->setFormat(format);
+}
+
+void Stage::arrange(const Arrangement& arrangement)
+{
+    _arrangement = arrangement;
+    for (Version* version : {_volume.get(), _geometry.get()}) {
+        if (!version->renderer) show(*version);
+        osg::ref_ptr<osg::Node> scene = version->root;
+        if (arrangement.scene) scene = arrangement.scene(scene);
+        version->renderer->setScene(scene);
+    }
+}
+
+FramebufferContents Stage::bare()
+{
+    for (osg::Group* group : {_geometry->volumes.get(), _geometry->surfaces.get()})
+        group->setNodeMask(0);
+    const FramebufferContents contents = show(*_geometry);
+    for (osg::Group* group : {_geometry->volumes.get(), _geometry->surfaces.get()})
+        group->setNodeMask(~0u);
+    return contents;
 }
 
 FramebufferContents Stage::volume(const StateRow* row, unsigned value)
@@ -257,7 +305,7 @@ FramebufferContents Stage::volume(const StateRow* row, unsigned value)
     if (row) row->set(*(set = new osg::StateSet), value);
     _volume->volumes->setStateSet(set);
     _volume->surfaces->setStateSet(_content == Content::SURFACE ? set.get() : nullptr);
-    return show(_volume);
+    return show(*_volume);
 }
 
 FramebufferContents Stage::geometry(const StateRow* row, unsigned value, bool concernsVolumes)
@@ -265,10 +313,9 @@ FramebufferContents Stage::geometry(const StateRow* row, unsigned value, bool co
     osg::ref_ptr<osg::StateSet> set;
     if (row) row->set(*(set = new osg::StateSet), value);
     _geometry->volumes->setStateSet(concernsVolumes ? set.get() : nullptr);
-    // What is merged with volumes has one sample, as they do.
-    const bool concernsSurfaces = _content == Content::SURFACE && _target != Target::SAMPLES;
+    const bool concernsSurfaces = _content == Content::SURFACE && !_surfacesBare;
     _geometry->surfaces->setStateSet(concernsSurfaces ? set.get() : nullptr);
-    return show(_geometry);
+    return show(*_geometry);
 }
 
 void Stage::restart()
