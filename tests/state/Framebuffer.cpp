@@ -113,8 +113,7 @@ void Framebuffer::read(osg::GLExtensions& gl) const
 
 FramebufferRenderer::FramebufferRenderer(osg::Node* scene, const support::RenderOptions& options,
                                          const FramebufferFormat& format)
-    : _framebuffer(new Framebuffer(options.width, options.height, format)),
-      _viewer(new osgViewer::Viewer)
+    : _width(options.width), _height(options.height), _viewer(new osgViewer::Viewer)
 {
     osg::Camera* camera = _viewer->getCamera();
     camera->setGraphicsContext(
@@ -127,12 +126,18 @@ FramebufferRenderer::FramebufferRenderer(osg::Node* scene, const support::Render
     camera->setComputeNearFarMode(options.computeNearFar
                                       ? osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES
                                       : osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-    _framebuffer->drawTo(*camera);
+    setFormat(format);
     _viewer->setLightingMode(options.light ? osg::View::HEADLIGHT : osg::View::NO_LIGHT);
     _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
     _viewer->setKeyEventSetsDone(0);
     _viewer->setSceneData(scene);
     _viewer->realize();
+}
+
+void FramebufferRenderer::setFormat(const FramebufferFormat& format)
+{
+    _framebuffer = new Framebuffer(_width, _height, format);
+    _framebuffer->drawTo(camera());
 }
 
 FramebufferContents FramebufferRenderer::render()

@@ -72,9 +72,12 @@ public:
 
     FramebufferContents render();
     osg::Camera& camera() { return *_viewer->getCamera(); }
-    osgViewer::Viewer& viewer() { return *_viewer; }
+    void setScene(osg::Node* scene) { _viewer->setSceneData(scene); }
+    /// Goes on in the same context.
+    void setFormat(const FramebufferFormat& format);
 
 private:
+    const int _width, _height;
     osg::ref_ptr<Framebuffer> _framebuffer;
     osg::ref_ptr<osgViewer::Viewer> _viewer;
 };

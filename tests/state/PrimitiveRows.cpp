@@ -117,7 +117,7 @@ std::vector<StateRow> primitiveRows()
         {"VertexAttribDivisor", setDivisors, Effect::NONE, false, OWN_ARRAYS},
         {"`GL_RASTERIZER_DISCARD`", mode(GL_RASTERIZER_DISCARD), Effect::AS_ON_GEOMETRY, true,
          "Nothing is drawn."},
-        {"Capabilityi: Enablei", setEnablei, Effect::NONE, false, "Means GL_BLEND only."},
+        {"Capabilityi: Enablei", setEnablei, Effect::NONE, false, "Blending is on anyway."},
         {"Capabilityi: Disablei", setDisablei, Effect::NONE, true,
          "Samples along a ray are composited by the ray function.", Target::ANY, Scope::VOLUMES},
     };

@@ -20,7 +20,8 @@ namespace {
 using osg::StateSet;
 
 const char* const OWN_PROGRAM = "A volume is drawn by programs of its own.";
-const char* const OWN_MATERIAL = "The appearance has a material of its own; see `setMaterial()`.";
+const char* const OWN_MATERIAL =
+    "The appearance has ambient, diffuse and specular shares of its own.";
 
 void setFog(StateSet& set, unsigned value)
 {

@@ -3,7 +3,7 @@
 #include "StateRow.h"
 
 #include <osg/ClipControl>
-#include <osg/ClipPlane>
+#include <osg/GL>
 #include <osg/Viewport>
 #include <osg/ViewportIndexed>
 
@@ -18,17 +18,12 @@ namespace {
 
 using osg::ClipControl;
 
-void setClipPlane(osg::StateSet& set, unsigned value)
-{
-    set.setAttributeAndModes(new osg::ClipPlane(0, osg::Vec4d(1.0, 0.5, 0.0, 1.0)), value);
-}
-
 } // namespace
 
 std::vector<StateRow> spaceRows()
 {
     return {
-        {"ClipPlane, ClipNode", setClipPlane, Effect::NONE_YET, true,
+        {"ClipPlane, ClipNode", mode(GL_CLIP_PLANE0), Effect::NONE_YET, true,
          "A VolumeGeometry that ends where the plane is shows the same."},
         {"Viewport", with<osg::Viewport>(8, 6, 32, 34), Effect::AS_ON_GEOMETRY, true,
          "Drawn into the rectangle."},

@@ -10,7 +10,7 @@
 namespace osgVolumizer {
 namespace test {
 
-/// What is drawn under a state.
+/// What is drawn under a state, or by a camera.
 enum class Content
 {
     SLABS,
@@ -20,6 +20,11 @@ enum class Content
     BARE_SURFACE, ///< the same, the state above the volume alone
     OVERLAP       ///< two volumes
 };
+
+std::string nameOf(Content content);
+
+/// Largest difference of any pixel in the first colours or depth; infinite where stencils differ.
+double difference(const FramebufferContents& a, const FramebufferContents& b);
 
 /// One scene in two versions: with volumes, and with translucent geometry that looks the same.
 /// Rays are parallel and volumes have two colours, in columns, so that flat geometry can. Before
@@ -31,8 +36,24 @@ class Stage
 public:
     static constexpr int SIZE = 48; ///< pixels each way
 
-    Stage(Content content, Target target);
+    explicit Stage(Content content, const FramebufferFormat& format = FramebufferFormat());
     ~Stage();
+
+    /// What both versions are drawn to from now on, in the contexts that they have.
+    void setFormat(const FramebufferFormat& format);
+    /// What is done to the cameras of both from now on, and what to their scenes; either may be
+    /// null.
+    struct Arrangement
+    {
+        std::function<void(osg::Camera&)> camera;
+        std::function<osg::ref_ptr<osg::Node>(osg::Node*)> scene;
+    };
+    void arrange(const Arrangement& arrangement);
+    /// Neither volumes nor what stands for them.
+    FramebufferContents bare();
+    /// With several samples a pixel what is merged with volumes has one, as they do: states
+    /// of surfaces that concern samples have no effect.
+    void setSurfacesBare(bool on) { _surfacesBare = on; }
 
     /// Under a row's state, or none for null.
     FramebufferContents volume(const StateRow* row, unsigned value);
@@ -47,10 +68,12 @@ private:
 
     void makeMeshes();
     osg::ref_ptr<osg::Group> volumes() const;
-    FramebufferContents show(std::unique_ptr<Version>& version);
+    FramebufferContents show(Version& version);
 
     Content _content;
-    Target _target;
+    FramebufferFormat _format;
+    Arrangement _arrangement;
+    bool _surfacesBare = false;
     std::unique_ptr<Version> _volume, _geometry;
 };
 

@@ -13,38 +13,28 @@ using support::FloatImage;
 
 namespace {
 
-std::string nameOf(Content content)
-{
-    static const char* const names[] = {"Slabs",   "Slices",      "Maximum",
-                                        "Surface", "BareSurface", "Overlap"};
-    return names[static_cast<int>(content)];
-}
-
 std::string nameOf(Target target)
 {
     static const char* const names[] = {"Float", "Byte", "Samples"};
     return names[static_cast<int>(target)];
 }
 
-/// Largest difference of any pixel, in colour, depth or stencil.
-double difference(const FramebufferContents& a, const FramebufferContents& b)
+FramebufferFormat formatOf(Target target)
 {
-    constexpr double INFINITE = std::numeric_limits<double>::infinity();
-    if (a.empty() || b.empty() || a.stencil != b.stencil) return INFINITE;
-    const FloatImage &p = a.colors.front(), &q = b.colors.front();
-    support::Mask all{p.width, p.height, {}};
-    all.set.assign(p.pixels.size(), 1);
-    double largest = support::compare(p, q, all).maximum;
-    for (std::size_t i = 0; i < p.depth.size(); ++i)
-        largest = std::max(largest, std::abs(double(p.depth[i]) - double(q.depth[i])));
-    return largest;
+    FramebufferFormat format;
+    if (target != Target::ANY) format.colors = {GL_RGBA8};
+    if (target == Target::SAMPLES) format.samples = 4;
+    return format;
 }
 
 class States : public support::GLTest,
                public ::testing::WithParamInterface<std::tuple<Content, Target>>
 {
 protected:
-    States() : _stage(std::get<0>(GetParam()), std::get<1>(GetParam())) {}
+    States() : _stage(std::get<0>(GetParam()), formatOf(std::get<1>(GetParam())))
+    {
+        _stage.setSurfacesBare(std::get<1>(GetParam()) == Target::SAMPLES);
+    }
 
     void SetUp() override
     {
