@@ -12,9 +12,6 @@ namespace {
 
 constexpr double NEEDED_VERSION = 3.3; // shaders, and what they fetch from
 
-// llvmpipe counts the bytes of a texture in 32 bits: one of 4 GiB is made, with nothing in it.
-constexpr std::int64_t LLVMPIPE_TEXTURE_BYTES = (std::int64_t(1) << 31) - 1;
-
 std::mutex& mockMutex()
 {
     static std::mutex mutex;
@@ -57,7 +54,6 @@ ContextLimits queryContextLimits(osg::State& state)
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits.texture3DSize);
     const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     limits.filtersFloatsBest = renderer && std::strstr(renderer, "llvmpipe");
-    if (limits.filtersFloatsBest) limits.textureBytes = LLVMPIPE_TEXTURE_BYTES;
     std::lock_guard<std::mutex> lock(mockMutex());
     if (mock()) mock()(limits);
     return limits;

@@ -4,9 +4,7 @@
 
 #include <osg/State>
 
-#include <cstdint>
 #include <functional>
-#include <limits>
 
 namespace osgVolumizer {
 namespace render {
@@ -17,8 +15,6 @@ struct ContextLimits
     double version = 0.0;      ///< of OpenGL
     bool floatTargets = false; ///< drawing into 16- and 32-bit float textures
     int texture3DSize = 0;     ///< largest side of a 3D texture, texels; 0: there are none
-    /// Most that one texture may take; what is asked for beyond is not even tried.
-    std::int64_t textureBytes = std::numeric_limits<std::int64_t>::max();
     /// Float textures are filtered both faster and more exactly than others (llvmpipe, whose 8-bit
     /// path also rounds the result to 8 bits: an error of half a 255th of the type's range).
     bool filtersFloatsBest = false;
