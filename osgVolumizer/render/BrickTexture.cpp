@@ -53,10 +53,15 @@ std::shared_ptr<BrickTexture::Copy> BrickTexture::copyIn(unsigned contextId)
 
 bool BrickTexture::isIn(unsigned contextId) const
 {
-    std::lock_guard<std::mutex> lock(_mutex);
-    const auto found = _copies.find(contextId);
-    return found != _copies.end() && found->second->texture &&
-           found->second->texture->getTextureObject(contextId);
+    std::shared_ptr<Copy> copy;
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        const auto found = _copies.find(contextId);
+        if (found == _copies.end()) return false;
+        copy = found->second;
+    }
+    std::lock_guard<std::mutex> lock(copy->mutex);
+    return copy->texture && copy->texture->getTextureObject(contextId);
 }
 
 CoarseTexture BrickTexture::apply(osg::RenderInfo& renderInfo, const ContextLimits& limits,
@@ -64,24 +69,27 @@ CoarseTexture BrickTexture::apply(osg::RenderInfo& renderInfo, const ContextLimi
 {
     osg::State& state = *renderInfo.getState();
     const std::shared_ptr<Copy> copy = copyIn(state.getContextID());
-    std::lock_guard<std::mutex> lock(copy->mutex);
-    if (copy->texture && copy->texture->getTextureObject(state.getContextID())) {
+    const auto applyMade = [&]() {
+        if (!copy->texture || !copy->texture->getTextureObject(state.getContextID())) return false;
         state.applyTextureAttribute(unit, copy->texture.get());
-    } else {
+        return true;
+    };
+    {
+        std::lock_guard<std::mutex> lock(copy->mutex);
         if (copy->refused) return {};
-        const osg::ref_ptr<const osg::Image> texels = load();
-        if (!texels) return {};
-        make(renderInfo, limits, *texels, *copy, unit);
-        if (!copy->texture) return {};
+        if (applyMade()) return coarseTexture(*copy->texture, _size);
     }
-    return coarseTexture(*copy->texture, _size);
+    const osg::ref_ptr<const osg::Image> texels = load();
+    if (!texels) return {};
+    std::lock_guard<std::mutex> lock(copy->mutex);
+    if (!applyMade()) make(renderInfo, limits, *texels, *copy, unit);
+    return copy->texture ? coarseTexture(*copy->texture, _size) : CoarseTexture();
 }
 
 void BrickTexture::make(osg::RenderInfo& renderInfo, const ContextLimits& limits,
                         const osg::Image& texels, Copy& copy, unsigned unit) const
 {
     osg::State& state = *renderInfo.getState();
-    copy.texture = nullptr;
     for (int side = std::min(limits.texture3DSize, largestSide(_size));
          side >= SMALLEST || side == largestSide(_size); side /= 2) {
         const glm::ivec3 size = glm::min(_size, glm::ivec3(side));
@@ -112,20 +120,21 @@ void BrickTexture::make(osg::RenderInfo& renderInfo, const ContextLimits& limits
 void BrickTexture::resizeGLObjectBuffers(unsigned int maximum)
 {
     std::lock_guard<std::mutex> lock(_mutex);
-    for (auto& copy : _copies)
+    for (auto& copy : _copies) {
+        std::lock_guard<std::mutex> copyLock(copy.second->mutex);
         if (copy.second->texture) copy.second->texture->resizeGLObjectBuffers(maximum);
+    }
 }
 
 void BrickTexture::releaseGLObjects(osg::State* state)
 {
     std::lock_guard<std::mutex> lock(_mutex);
-    for (auto copy = _copies.begin(); copy != _copies.end();) {
-        if (state && copy->first != state->getContextID()) {
-            ++copy;
-            continue;
-        }
-        if (copy->second->texture) copy->second->texture->releaseGLObjects(state);
-        copy = _copies.erase(copy);
+    for (auto& copy : _copies) {
+        if (state && copy.first != state->getContextID()) continue;
+        std::lock_guard<std::mutex> copyLock(copy.second->mutex);
+        if (copy.second->texture) copy.second->texture->releaseGLObjects(state);
+        copy.second->texture = nullptr;
+        copy.second->refused = false;
     }
 }
 

@@ -46,7 +46,7 @@ public:
 private:
     struct Copy
     {
-        std::mutex mutex;
+        std::mutex mutex; ///< of what follows; not held while texels are loaded
         osg::ref_ptr<osg::Texture3D> texture;
         bool refused = false;
     };

@@ -171,23 +171,30 @@ bool JoinedTexture::apply(osg::RenderInfo& renderInfo, const ContextLimits& limi
     return true;
 }
 
-void JoinedTexture::resizeGLObjectBuffers(unsigned int maximum)
+std::vector<std::pair<unsigned, std::shared_ptr<JoinedTexture::Contents>>>
+JoinedTexture::allContents() const
 {
     std::lock_guard<std::mutex> lock(_mutex);
-    for (auto& contents : _contents)
+    return {_contents.begin(), _contents.end()};
+}
+
+void JoinedTexture::resizeGLObjectBuffers(unsigned int maximum)
+{
+    for (const auto& contents : allContents()) {
+        std::lock_guard<std::mutex> lock(contents.second->mutex);
         if (contents.second->texture) contents.second->texture->resizeGLObjectBuffers(maximum);
+    }
 }
 
 void JoinedTexture::releaseGLObjects(osg::State* state)
 {
-    std::lock_guard<std::mutex> lock(_mutex);
-    for (auto contents = _contents.begin(); contents != _contents.end();) {
-        if (state && contents->first != state->getContextID()) {
-            ++contents;
-            continue;
-        }
-        if (contents->second->texture) contents->second->texture->releaseGLObjects(state);
-        contents = _contents.erase(contents);
+    for (const auto& contents : allContents()) {
+        if (state && contents.first != state->getContextID()) continue;
+        std::lock_guard<std::mutex> lock(contents.second->mutex);
+        if (contents.second->texture) contents.second->texture->releaseGLObjects(state);
+        contents.second->texture = nullptr;
+        contents.second->bricks.clear();
+        contents.second->refused = false;
     }
 }
 

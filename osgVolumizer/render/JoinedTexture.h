@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 namespace osgVolumizer {
@@ -80,6 +81,7 @@ private:
 
     std::shared_ptr<Contents> find(unsigned contextId) const;
     std::shared_ptr<Contents> contentsIn(unsigned contextId);
+    std::vector<std::pair<unsigned, std::shared_ptr<Contents>>> allContents() const;
     bool make(osg::State& state, const ContextLimits& limits, Contents& contents,
               unsigned unit) const;
     static void writeEmpty(osg::State& state, const JoinedPiece& piece, Contents& contents);
