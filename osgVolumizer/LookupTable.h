@@ -1,5 +1,6 @@
 #pragma once
 
+#include "RenderData.h"
 #include "core/Export.h"
 #include "core/transfer/TransferFunction.h"
 
@@ -61,6 +62,9 @@ public:
     void setFileName(const std::string& name) { _fileName = name; }
     const std::string& getFileName() const { return _fileName; }
 
+    /// The renderer's: textures, shared by all appearances that have the table.
+    RenderDataSlot& renderData() const { return _renderData; }
+
 protected:
     ~LookupTable() override = default;
 
@@ -72,6 +76,7 @@ private:
     Domain _domain = RANGE_FRACTION;
     std::atomic<unsigned> _modifiedCount;
     std::string _fileName;
+    mutable RenderDataSlot _renderData;
 };
 
 /// Reads a `.lut` (plain text, "value r g b a" per line in data values, '#' starts a comment) or

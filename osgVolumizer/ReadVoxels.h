@@ -13,13 +13,15 @@ namespace osgVolumizer {
 /// Told how much of a long work is done, from 0 to 1.
 using Progress = std::function<void(double fraction)>;
 
-/// Reads a volume into memory. `name`, found along OSG's data path, is
+/// Reads a volume. `name`, found along OSG's data path, is
 /// - a file that OpenImageIO opens: 3D TIFF, several subimages (pages) as slices, OpenEXR, OpenVDB;
 /// - a DICOM file, uncompressed, with data values (HU for a CT) and its spacing in mm;
 /// - a folder of 2D images, in natural order (DICOM: along the patient), or a numbered pattern
 /// ("slice%03d.png", "slice####.png")
 ///   without gaps;
 /// - a raw file as "name.raw.256,256,110,uint8[,headerBytes[,big|little]]".
+/// A raw file stays open and is read brick by brick, as bricks are asked for; all others are read
+/// into memory.
 /// Image row 0 is j = 0, the first slice k = 0. Four channels R, G, B, A make RGBA voxels, R, G, B
 /// their luminance, anything else its first channel.
 ///

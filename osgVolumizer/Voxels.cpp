@@ -15,7 +15,6 @@ namespace osgVolumizer {
 struct Voxels::Brick
 {
     std::mutex mutex; // held while the source reads, so that a brick is read once
-    Block block;
     core::ValueRange range;
     bool rangeKnown = false;
     bool failed = false;
@@ -219,6 +218,7 @@ Status Voxels::rebuildLayout(const glm::ivec3& brickSize, int overlap)
 
 void Voxels::forgetBricks()
 {
+    _cache.clear();
     std::lock_guard<std::mutex> lock(_mutex);
     _bricks.clear();
     _allModified = ++_lastModified;
@@ -229,13 +229,16 @@ void Voxels::dirty(std::int64_t brick)
 {
     std::lock_guard<std::mutex> lock(_mutex);
     if (brick < 0) {
+        _cache.clear();
         _bricks.clear();
         _allModified = ++_lastModified;
     } else if (brick < _layout.brickCount()) {
         // A fresh one: threads that read the old one may finish with it.
         auto fresh = std::make_shared<Brick>();
+        BrickPtr& known = _bricks[brick];
+        _cache.remove({brick, known ? known->modified : _allModified});
         fresh->modified = ++_lastModified;
-        _bricks[brick] = std::move(fresh);
+        known = std::move(fresh);
     }
 }
 
@@ -258,13 +261,14 @@ Voxels::BrickPtr Voxels::findBrick(std::int64_t brick) const
     return found;
 }
 
-Voxels::Block Voxels::readBrick(const core::Box3i& samples, Status& status) const
+Voxels::Block Voxels::readBrick(const core::Box3i& samples, bool& shared, Status& status) const
 {
     try { // as in knownRange()
         const std::int64_t bytes =
             core::voxelBytes(samples.size(), _description.type, _description.components);
-        const Block shared = _source->share(samples);
-        if (shared && shared.bytes == static_cast<std::size_t>(bytes)) return shared;
+        const Block own = _source->share(samples);
+        shared = own && own.bytes == static_cast<std::size_t>(bytes);
+        if (shared) return own;
         std::shared_ptr<unsigned char[]> data(new unsigned char[static_cast<std::size_t>(bytes)]);
         status = _source->read(samples, data.get());
         if (status.ok()) return {data, data.get(), static_cast<std::size_t>(bytes)};
@@ -279,20 +283,24 @@ Voxels::Block Voxels::readBrick(const core::Box3i& samples, Status& status) cons
 }
 
 /// Expects brick.mutex to be held.
-const Voxels::Block& Voxels::loadBrick(std::int64_t index, Brick& brick) const
+Voxels::Block Voxels::loadBrick(std::int64_t index, Brick& brick) const
 {
-    if (brick.block || brick.failed) return brick.block;
+    if (brick.failed) return {};
+    Block block = _cache.find({index, brick.modified});
+    if (block) return block;
     Status status;
+    bool shared = false;
     ++_readCount;
-    brick.block = readBrick(_layout.brick(index).samples, status);
+    block = readBrick(_layout.brick(index).samples, shared, status);
     brick.failed = !status.ok();
+    if (block) _cache.add({index, brick.modified}, block, shared);
     if (brick.failed) {
         status.text = "brick " + std::to_string(index) +
                       (_fileName.empty() ? "" : " of " + _fileName) + ": " + status.text;
         if (status.index < 0) status.index = index;
         reportError(status);
     }
-    return brick.block;
+    return block;
 }
 
 Voxels::Block Voxels::getBrick(std::int64_t index) const
@@ -307,8 +315,7 @@ void Voxels::releaseBrick(std::int64_t index) const
 {
     const BrickPtr brick = findBrick(index);
     if (!brick) return;
-    std::lock_guard<std::mutex> lock(brick->mutex);
-    brick->block = Block();
+    _cache.remove({index, brick->modified});
 }
 
 std::pair<double, double> Voxels::getBrickRange(std::int64_t index) const
@@ -320,7 +327,7 @@ std::pair<double, double> Voxels::getBrickRange(std::int64_t index) const
         const core::Box3i samples = _layout.brick(index).samples;
         if (const auto known = knownRange(samples)) {
             brick->range = {known->first, known->second};
-        } else if (const Block& block = loadBrick(index, *brick)) {
+        } else if (const Block block = loadBrick(index, *brick)) {
             brick->range = core::scanRange(
                 {block.data, _description.type, _description.components, samples.size()},
                 significantComponent(_description));
@@ -330,28 +337,15 @@ std::pair<double, double> Voxels::getBrickRange(std::int64_t index) const
     return {brick->range.low, brick->range.high};
 }
 
-osg::ref_ptr<Voxels::RenderData> Voxels::getRenderData() const
-{
-    std::lock_guard<std::mutex> lock(_mutex);
-    return _renderData;
-}
-
-osg::ref_ptr<Voxels::RenderData>
-Voxels::getOrCreateRenderData(const std::function<osg::ref_ptr<RenderData>()>& make) const
-{
-    std::lock_guard<std::mutex> lock(_mutex);
-    if (!_renderData) _renderData = make();
-    return _renderData;
-}
-
 void Voxels::resizeGLObjectBuffers(unsigned int maximum)
 {
-    if (const osg::ref_ptr<RenderData> data = getRenderData()) data->resizeGLObjectBuffers(maximum);
+    if (const osg::ref_ptr<RenderData> data = _renderData.get())
+        data->resizeGLObjectBuffers(maximum);
 }
 
 void Voxels::releaseGLObjects(osg::State* state) const
 {
-    if (const osg::ref_ptr<RenderData> data = getRenderData()) data->releaseGLObjects(state);
+    if (const osg::ref_ptr<RenderData> data = _renderData.get()) data->releaseGLObjects(state);
 }
 
 } // namespace osgVolumizer

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "BlockCache.h"
+#include "RenderData.h"
 #include "VoxelSource.h"
 #include "core/voxels/BrickLayout.h"
 
@@ -18,7 +20,7 @@
 namespace osgVolumizer {
 
 /// The voxels of one volume, cut into bricks: shared by any number of appearances, views and
-/// contexts. Bricks are read from the source when first drawn, and kept.
+/// contexts. Bricks are read from the source when they are needed; those used last are kept.
 ///
 /// Frames: voxel frame as in core/voxels/BrickLayout.h; object = origin + spacing * voxel.
 class OSGVOLUMIZER_EXPORT Voxels : public osg::Object
@@ -70,10 +72,13 @@ public:
     int getOverlap() const { return _overlap; }
     const core::BrickLayout& getLayout() const { return _layout; }
 
-    /// The samples of a brick, read on the first call, once however many threads ask, and kept;
-    /// without a copy where the source shares its memory. Empty (after an error, reported once) if
-    /// the source fails, until dirty(). Thread safe. dirty() makes a new block; one that is held
-    /// stays as it is.
+    /// Bound on the bricks that are kept: 32 MiB.
+    static constexpr std::size_t CACHE_BYTES = std::size_t(32) << 20;
+    /// The samples of a brick, read on the first call, once however many threads ask; without a
+    /// copy where the source shares its memory. Copies are kept while they are among the last
+    /// CACHE_BYTES that were asked for, and read again after that. Empty (after an error, reported
+    /// once) if the source fails, until dirty(). Thread safe. dirty() makes a new block; one that
+    /// is held stays as it is.
     using Block = VoxelBlock;
     Block getBrick(std::int64_t brick) const;
     /// Forgets the samples of a brick (held blocks stay), keeps its range; read again when next
@@ -102,22 +107,11 @@ public:
     /// Bricks read from the source (copied or shared) since construction.
     std::uint64_t getReadCount() const { return _readCount; }
 
-    /// What the renderer keeps with the voxels: textures per context. Every method may be called
-    /// from several threads.
-    class RenderData : public osg::Referenced
-    {
-    public:
-        virtual void resizeGLObjectBuffers(unsigned int maximum) = 0;
-        virtual void releaseGLObjects(osg::State* state) const = 0;
+    /// Bytes of the bricks that are kept, but for those that share the source's memory.
+    std::size_t getCachedBytes() const { return _cache.bytes(); }
 
-    protected:
-        ~RenderData() override = default;
-    };
-    /// Null until it is made. Thread safe.
-    osg::ref_ptr<RenderData> getRenderData() const;
-    /// Calls `make` when there is none; one caller only does. Thread safe.
-    osg::ref_ptr<RenderData>
-    getOrCreateRenderData(const std::function<osg::ref_ptr<RenderData>()>& make) const;
+    /// The renderer's: textures per context.
+    RenderDataSlot& renderData() const { return _renderData; }
     void resizeGLObjectBuffers(unsigned int maximum) override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
 
@@ -125,14 +119,14 @@ protected:
     ~Voxels() override;
 
 private:
-    struct Brick; // samples, range and modified count of one brick
+    struct Brick; // range and modified count of one brick
     using BrickPtr = std::shared_ptr<Brick>;
 
     Status rebuildLayout(const glm::ivec3& brickSize, int overlap);
     void forgetBricks();
     BrickPtr findBrick(std::int64_t brick) const;
-    Block readBrick(const core::Box3i& samples, Status& status) const;
-    const Block& loadBrick(std::int64_t index, Brick& brick) const;
+    Block readBrick(const core::Box3i& samples, bool& shared, Status& status) const;
+    Block loadBrick(std::int64_t index, Brick& brick) const;
     std::optional<std::pair<double, double>> knownRange(const core::Box3i& samples) const;
     void findRange() const;
 
@@ -151,8 +145,9 @@ private:
     mutable std::unordered_map<std::int64_t, BrickPtr> _bricks; // those asked for
     unsigned _allModified = 0; // modified count of bricks not dirtied since
     unsigned _lastModified = 0;
-    mutable osg::ref_ptr<RenderData> _renderData;
 
+    mutable BlockCache _cache{CACHE_BYTES};
+    mutable RenderDataSlot _renderData;
     mutable std::atomic<std::uint64_t> _readCount{0};
     std::atomic<unsigned> _layoutCount;
 };

@@ -149,7 +149,7 @@ Result<Source> readDicom(const std::vector<std::string>& paths, const Progress& 
     if (!files.ok()) return files.status;
     sortSlices(*files);
     const VoxelSource::Description description = describe(*files);
-    Source source = new MemoryVoxelSource;
+    MemorySource source = new MemoryVoxelSource;
     if (Status status = source->allocate(description); !status.ok())
         return Status(status.code, paths.front() + ": " + status.text);
     const std::int64_t step =
@@ -161,7 +161,7 @@ Result<Source> readDicom(const std::vector<std::string>& paths, const Progress& 
             return status;
         if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(files->size()));
     }
-    return source;
+    return Source(source);
 }
 
 } // namespace io

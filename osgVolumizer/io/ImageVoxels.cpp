@@ -12,19 +12,19 @@ namespace {
 constexpr int MAXIMUM_SLICES = 1 << 20;
 
 /// Voxels for slices like those that `file` is at, `slices` of them.
-Result<Source> allocate(const ImageFile& file, const PixelFormat& format, int slices)
+Result<MemorySource> allocate(const ImageFile& file, const PixelFormat& format, int slices)
 {
     VoxelSource::Description description;
     description.size = glm::ivec3(file.size().x, file.size().y, slices);
     description.type = format.type;
     description.components = format.components;
-    Source source = new MemoryVoxelSource;
+    MemorySource source = new MemoryVoxelSource;
     if (Status status = source->allocate(description); !status.ok())
         return Status(status.code, file.path() + ": " + status.text);
     return source;
 }
 
-unsigned char* sliceAt(const Source& source, int z)
+unsigned char* sliceAt(const MemorySource& source, int z)
 {
     const VoxelSource::Description d = source->describe();
     return static_cast<unsigned char*>(source->data()) +
@@ -56,14 +56,14 @@ Result<Source> readDeep(ImageFile& file, const PixelFormat& format, const Progre
 {
     const int depth = file.size().z;
     if (Status status = file.checkBytes(bytesOf(file, format, depth)); !status.ok()) return status;
-    Result<Source> source = allocate(file, format, depth);
-    if (!source.ok()) return source;
+    Result<MemorySource> source = allocate(file, format, depth);
+    if (!source.ok()) return source.status;
     for (int z = 0; z < depth; z += file.sliceStep()) {
         if (Status status = file.readSlices(format, z, sliceAt(*source, z)); !status.ok())
             return status;
         report(progress, std::min(z + file.sliceStep(), depth), depth);
     }
-    return source;
+    return Source(*source);
 }
 
 } // namespace
@@ -93,8 +93,8 @@ Result<Source> readImage(const std::string& path, const Progress& progress)
     file.seek(0);
     if (Status status = file.checkBytes(bytesOf(file, *format, slices)); !status.ok())
         return status;
-    Result<Source> source = allocate(file, *format, slices);
-    if (!source.ok()) return source;
+    Result<MemorySource> source = allocate(file, *format, slices);
+    if (!source.ok()) return source.status;
     for (int z = 0; z < slices; ++z) {
         if (!file.seek(z))
             return Status(ErrorCode::FILE_UNREADABLE,
@@ -103,7 +103,7 @@ Result<Source> readImage(const std::string& path, const Progress& progress)
             return status;
         report(progress, z + 1, slices);
     }
-    return source;
+    return Source(*source);
 }
 
 Result<Source> readStack(const std::vector<std::string>& paths, const Progress& progress)
@@ -112,7 +112,7 @@ Result<Source> readStack(const std::vector<std::string>& paths, const Progress& 
         Result<Source> source = readDicom(paths, progress);
         if (source.status.code != ErrorCode::NOT_SUPPORTED) return source;
     }
-    Result<Source> source(Source{});
+    Result<MemorySource> source(MemorySource{});
     PixelFormat format;
     glm::ivec3 size(0);
     std::string first;
@@ -131,7 +131,7 @@ Result<Source> readStack(const std::vector<std::string>& paths, const Progress& 
                 return Status(ErrorCode::SIZE_MISMATCH,
                               file.path() + " has " + first + ", which is no single slice");
             source = allocate(file, format, slices);
-            if (!source.ok()) return source;
+            if (!source.ok()) return source.status;
         }
         Status status = compare(file, file.path(), size, format, first);
         if (status.ok()) status = file.checkBytes(bytesOf(file, format, 1));
@@ -139,7 +139,7 @@ Result<Source> readStack(const std::vector<std::string>& paths, const Progress& 
         if (!status.ok()) return status;
         report(progress, z + 1, slices);
     }
-    return source;
+    return Source(*source);
 }
 
 } // namespace io

@@ -1,25 +1,15 @@
+#include "RawVoxelSource.h"
 #include "VoxelFiles.h"
 
 #include "../core/RegularFile.h"
 #include "../core/Text.h"
-#include "../core/voxels/VoxelData.h"
 
-#include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 namespace osgVolumizer {
 namespace io {
 
 namespace {
-
-constexpr std::int64_t CHUNK_BYTES = 16 << 20; // between two reports of progress
-
-bool hostIsBigEndian()
-{
-    const std::uint16_t one = 1;
-    return *reinterpret_cast<const unsigned char*>(&one) == 0;
-}
 
 Status checkFileSize(const RawName& raw, const std::string& path)
 {
@@ -46,32 +36,10 @@ Result<Source> readRaw(const RawName& raw, const std::string& path, const Progre
 {
     if (Status status = core::requireRegularFile(path); !status.ok()) return status;
     if (Status status = checkFileSize(raw, path); !status.ok()) return status;
-    VoxelSource::Description description;
-    description.size = raw.size;
-    description.type = raw.type;
-    Source source = new MemoryVoxelSource;
-    if (Status status = source->allocate(description); !status.ok())
-        return Status(status.code, path + ": " + status.text);
-
-    std::ifstream file(path, std::ios::binary);
-    file.seekg(raw.headerBytes);
-    const std::int64_t bytes = description.sizeInBytes();
-    for (std::int64_t done = 0; done < bytes;) {
-        const std::int64_t chunk = std::min(CHUNK_BYTES, bytes - done);
-        char* to = static_cast<char*>(source->data()) + done;
-        if (!file.read(to, chunk))
-            return Status(ErrorCode::FILE_UNREADABLE,
-                          path + " cannot be read beyond byte " +
-                              std::to_string(raw.headerBytes + done + file.gcount()) + " of " +
-                              std::to_string(raw.fileBytes()));
-        if (raw.bigEndian != hostIsBigEndian()) {
-            const std::size_t element = voxelTypeSize(raw.type);
-            core::swapBytes(to, element, static_cast<std::size_t>(chunk) / element);
-        }
-        done += chunk;
-        if (progress) progress(static_cast<double>(done) / static_cast<double>(bytes));
-    }
-    return source;
+    const osg::ref_ptr<RawVoxelSource> source = new RawVoxelSource;
+    if (Status status = source->open(raw, path); !status.ok()) return status;
+    if (progress) progress(1.0);
+    return Source(source);
 }
 
 } // namespace io

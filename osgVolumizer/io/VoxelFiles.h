@@ -9,10 +9,11 @@
 namespace osgVolumizer {
 namespace io {
 
-using Source = osg::ref_ptr<MemoryVoxelSource>;
+using Source = osg::ref_ptr<VoxelSource>;
+using MemorySource = osg::ref_ptr<MemoryVoxelSource>;
 
-/// The voxels of a raw file. The file must have exactly the bytes that the name says: fewer are
-/// FILE_UNREADABLE, more SIZE_MISMATCH.
+/// The voxels of a raw file, read as they are asked for. The file must have exactly the bytes that
+/// the name says: fewer are FILE_UNREADABLE, more SIZE_MISMATCH.
 Result<Source> readRaw(const RawName& raw, const std::string& path, const Progress& progress);
 
 /// The voxels of one file that OpenImageIO opens: the first subimage where that has depth, else all

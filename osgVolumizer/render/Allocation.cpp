@@ -3,6 +3,11 @@
 #include "GLErrors.h"
 #include "VolumeProgram.h"
 
+#include <osg/BufferObject>
+#include <osg/Image>
+
+#include <glm/common.hpp>
+
 #include <mutex>
 
 namespace osgVolumizer {
@@ -28,6 +33,31 @@ bool isMockedAway(const AllocationRequest& request)
     return mock() && mock()(request);
 }
 
+AllocationRequest requestOf(AllocationRequest::Kind kind, const osg::Texture& texture)
+{
+    AllocationRequest request;
+    request.kind = kind;
+    request.internalFormat = static_cast<GLenum>(texture.getInternalFormat());
+    request.size = {texture.getTextureWidth(), texture.getTextureHeight(),
+                    texture.getTextureDepth()};
+    if (const osg::Image* image = texture.getImage(0))
+        request.size = {image->s(), image->t(), image->r()};
+    request.size = glm::max(request.size, glm::ivec3(1));
+    return request;
+}
+
+// Nothing that OSG would take for a texture stays.
+void forget(osg::State& state, osg::Texture& texture)
+{
+    const unsigned context = state.getContextID();
+    if (auto* object = texture.getTextureObject(context)) {
+        object->_allocated = false; // or the next texture of this size gets it as a whole one
+        texture.releaseGLObjects(&state);
+    }
+    if (osg::Image* image = texture.getImage(0))
+        if (osg::BufferObject* buffer = image->getBufferObject()) buffer->releaseGLObjects(&state);
+}
+
 } // namespace
 
 bool allocate(const AllocationRequest& request, const std::function<void()>& make)
@@ -51,8 +81,28 @@ bool allocateTarget(osg::State& state, osg::Texture& texture, const glm::ivec3& 
         texture.apply(state);
         state.haveAppliedTextureAttribute(UNIT_VOXELS, osg::StateAttribute::TEXTURE);
     });
-    if (!made) texture.releaseGLObjects(&state);
+    if (!made) forget(state, texture);
     return made;
+}
+
+bool applyAllocated(osg::State& state, AllocationRequest::Kind kind, osg::Texture& texture,
+                    unsigned unit)
+{
+    if (texture.getTextureObject(state.getContextID())) {
+        state.applyTextureAttribute(unit, &texture);
+        return true;
+    }
+    const bool made = allocate(requestOf(kind, texture), [&]() {
+        state.setActiveTextureUnit(unit);
+        texture.apply(state);
+    });
+    if (made) {
+        state.haveAppliedTextureAttribute(unit, &texture);
+        return true;
+    }
+    forget(state, texture);
+    state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+    return false;
 }
 
 void mockAllocation(std::function<bool(const AllocationRequest&)> isRefused)

@@ -35,6 +35,12 @@ bool allocate(const AllocationRequest& request, const std::function<void()>& mak
 /// bound to a unit that OSG knows to have changed.
 bool allocateTarget(osg::State& state, osg::Texture& texture, const glm::ivec3& size);
 
+/// Applies a texture with size and format, or with an image, to a unit, as
+/// State::applyTextureAttribute() does. Where the context lacks it, it is made, and checked; false
+/// where the card refuses it: then the context has no object of it.
+bool applyAllocated(osg::State& state, AllocationRequest::Kind kind, osg::Texture& texture,
+                    unsigned unit);
+
 /// For tests: what cards refuse from now on, besides what they refuse anyhow; an empty function
 /// ends it. Thread safe.
 void mockAllocation(std::function<bool(const AllocationRequest&)> isRefused);

@@ -1,5 +1,7 @@
 #include "BrickCells.h"
 
+#include "BrickResidency.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -224,10 +226,22 @@ std::shared_ptr<const BrickCells> CellCache::get(const Voxels& voxels, std::int6
 {
     const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
     const Key key = keyOf(voxels, query);
-    std::lock_guard<std::mutex> lock(_mutex);
-    Brick& entry = _bricks[brick];
-    if (entry.modifiedCount != modified || entry.layoutCount != layout)
-        entry = {modified, layout, nullptr, nullptr, nullptr, {}};
+    std::shared_ptr<Brick> held;
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        std::shared_ptr<Brick>& known = _bricks[brick];
+        if (!known) known = std::make_shared<Brick>();
+        held = known;
+    }
+    Brick& entry = *held;
+    std::lock_guard<std::mutex> lock(entry.mutex);
+    if (entry.modifiedCount != modified || entry.layoutCount != layout) {
+        entry.modifiedCount = modified;
+        entry.layoutCount = layout;
+        entry.linear = entry.cubic = nullptr;
+        entry.layers = nullptr;
+        entry.cells.clear();
+    }
     const auto found = std::find_if(entry.cells.begin(), entry.cells.end(),
                                     [&key](const auto& c) { return c.first == key; });
     if (found != entry.cells.end()) {
@@ -277,8 +291,8 @@ bool CellCache::scan(const Voxels& voxels, std::int64_t brick, bool cubic, Brick
 {
     auto& grid = cubic ? entry.cubic : entry.linear;
     if (grid && entry.layers) return grid->cellCount() > 0;
-    const Voxels::Block block = voxels.getBrick(brick);
-    if (!block.data) return false;
+    const VoxelBlock block = BrickResidency::load(voxels, brick);
+    if (!block) return false;
     const core::VoxelView view = viewOf(voxels, brick, block);
     const int component = shownComponent(voxels);
     const glm::dvec3 origin(voxels.getLayout().brick(brick).samples.min);
@@ -290,22 +304,49 @@ bool CellCache::scan(const Voxels& voxels, std::int64_t brick, bool cubic, Brick
     return grid->cellCount() > 0;
 }
 
-void CellCache::resizeGLObjectBuffers(unsigned int maximum)
+bool CellCache::isScanned(const Voxels& voxels, std::int64_t brick) const
+{
+    std::shared_ptr<Brick> entry;
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        const auto found = _bricks.find(brick);
+        if (found == _bricks.end()) return false;
+        entry = found->second;
+    }
+    std::lock_guard<std::mutex> lock(entry->mutex);
+    return entry->layers && entry->modifiedCount == voxels.getModifiedCount(brick) &&
+           entry->layoutCount == voxels.getLayoutCount();
+}
+
+std::vector<std::shared_ptr<CellCache::Brick>> CellCache::allBricks() const
 {
     std::lock_guard<std::mutex> lock(_mutex);
-    for (auto& brick : _bricks)
-        for (auto& cells : brick.second.cells)
+    std::vector<std::shared_ptr<Brick>> all;
+    for (const auto& brick : _bricks)
+        all.push_back(brick.second);
+    return all;
+}
+
+void CellCache::resizeGLObjectBuffers(unsigned int maximum)
+{
+    for (const std::shared_ptr<Brick>& brick : allBricks()) {
+        std::lock_guard<std::mutex> lock(brick->mutex);
+        for (auto& cells : brick->cells)
             if (cells.second->texture) cells.second->texture->resizeGLObjectBuffers(maximum);
+    }
+    std::lock_guard<std::mutex> lock(_mutex);
     for (auto& joined : _joined)
         joined.cells->texture->resizeGLObjectBuffers(maximum);
 }
 
 void CellCache::releaseGLObjects(osg::State* state) const
 {
-    std::lock_guard<std::mutex> lock(_mutex);
-    for (const auto& brick : _bricks)
-        for (const auto& cells : brick.second.cells)
+    for (const std::shared_ptr<Brick>& brick : allBricks()) {
+        std::lock_guard<std::mutex> lock(brick->mutex);
+        for (const auto& cells : brick->cells)
             if (cells.second->texture) cells.second->texture->releaseGLObjects(state);
+    }
+    std::lock_guard<std::mutex> lock(_mutex);
     for (const auto& joined : _joined)
         joined.cells->texture->releaseGLObjects(state);
 }

@@ -59,7 +59,7 @@ bool showsValues(const Voxels& voxels, const OccupancyQuery& query, double low, 
 class CellCache
 {
 public:
-    /// Reads the brick on the first call. Null where the source fails.
+    /// Reads the brick on the first call. Null where the source fails. Waits for no other brick.
     std::shared_ptr<const BrickCells> get(const Voxels& voxels, std::int64_t brick,
                                           const OccupancyQuery& query);
     using Part = std::pair<std::int64_t, std::shared_ptr<const BrickCells>>;
@@ -67,6 +67,8 @@ public:
     /// asked for before. Cells of other bricks show nothing.
     std::shared_ptr<const BrickCells> join(const Voxels& voxels, const OccupancyQuery& query,
                                            const std::vector<Part>& parts);
+    /// Whether a brick has been read for its cells, in the present state of its data.
+    bool isScanned(const Voxels& voxels, std::int64_t brick) const;
     void resizeGLObjectBuffers(unsigned int maximum);
     void releaseGLObjects(osg::State* state) const;
 
@@ -84,6 +86,7 @@ private:
     };
     struct Brick
     {
+        mutable std::mutex mutex; ///< held while the brick is read and scanned
         unsigned modifiedCount = 0, layoutCount = 0;
         std::shared_ptr<const core::CellGrid> linear, cubic; ///< by the support of the filter
         std::shared_ptr<const core::LayerRanges> layers;
@@ -100,9 +103,10 @@ private:
 
     static Key keyOf(const Voxels& voxels, const OccupancyQuery& query);
     static bool scan(const Voxels& voxels, std::int64_t brick, bool cubic, Brick& entry);
+    std::vector<std::shared_ptr<Brick>> allBricks() const;
 
-    mutable std::mutex _mutex;
-    std::map<std::int64_t, Brick> _bricks;
+    mutable std::mutex _mutex; ///< of what follows; never held while that of a brick is taken
+    std::map<std::int64_t, std::shared_ptr<Brick>> _bricks;
     std::list<Joined> _joined; ///< most recent first
 };
 

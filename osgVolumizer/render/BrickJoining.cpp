@@ -1,5 +1,10 @@
 #include "BrickJoining.h"
 
+#include "BrickResidency.h"
+#include "JoinedBricks.h"
+
+#include "../core/voxels/VoxelData.h"
+
 #include <osgUtil/CullVisitor>
 
 #include <algorithm>
@@ -31,12 +36,12 @@ core::Box3d unionOf(const std::vector<SelectedBrick>& bricks)
     return box;
 }
 
-double joinedBytes(const Voxels& voxels, const SelectedBrick& brick)
+// As they will be in the context. Only volumes much smaller than the bound are stored in a wider
+// format there: see makeVoxelTexture().
+double joinedBytes(const Voxels& voxels, bool gradients)
 {
-    const glm::dvec3 all(voxels.getSize());
-    const glm::dvec3 own(voxels.getLayout().brick(brick.index).samples.size());
-    const glm::dvec3 ratio = all / own;
-    return double(brick.texture.bytes) * ratio.x * ratio.y * ratio.z;
+    return double(core::sampleCount(voxels.getSize())) *
+           double(texelFormat(voxels, gradients).texelBytes());
 }
 
 bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
@@ -52,7 +57,7 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, osgUtil::Cu
     const osg::State* state = visitor.getState();
     const glm::ivec3 size = voxels.getSize();
     return state && std::max({size.x, size.y, size.z}) <= texture3DSizeOf(state->getContextID()) &&
-           joinedBytes(voxels, volume.bricks.front()) <= MAXIMUM_BYTES;
+           joinedBytes(voxels, features.gradientTexture) <= MAXIMUM_BYTES;
 }
 
 // By all bricks that were ever needed, so that it does not depend on the view. Where nothing is
@@ -71,15 +76,13 @@ JoinedPiece pieceOf(const Voxels& voxels, std::int64_t brick)
     piece.brick = brick;
     piece.modifiedCount = voxels.getModifiedCount(brick);
     piece.samples = voxels.getLayout().brick(brick).samples;
-    piece.imageOrigin = piece.samples.min;
+    piece.texelsOrigin = piece.samples.min;
     return piece;
 }
 
-JoinedPiece pieceOf(const Voxels& voxels, std::int64_t brick, const BrickTexture& texture,
-                    bool gradients)
+JoinedPiece pieceOf(const Voxels& voxels, std::int64_t brick, bool gradients)
 {
     JoinedPiece piece = pieceOf(voxels, brick);
-    piece.texels = texture.texture->getImage();
     if (!gradients || voxels.getLayout().overlap() < 3) return piece;
     // Gradients of a brick's outermost samples have only one side; the neighbour has both.
     const glm::ivec3 size = voxels.getSize();
@@ -91,7 +94,7 @@ JoinedPiece pieceOf(const Voxels& voxels, std::int64_t brick, const BrickTexture
 }
 
 // The pieces of bricks that are not drawn, but that rays pass; false where that cannot be done.
-bool addLeftOut(const VolumeInstance& volume, const Voxels& voxels, BrickTextures& textures,
+bool addLeftOut(const VolumeInstance& volume, const Voxels& voxels, BrickResidency& textures,
                 const LeftOutBricks& leftOut, const core::Box3d& box,
                 std::vector<JoinedPiece>& pieces)
 {
@@ -102,22 +105,19 @@ bool addLeftOut(const VolumeInstance& volume, const Voxels& voxels, BrickTexture
     for (const std::int64_t brick : leftOut.empty) {
         if (!isPassed(brick)) continue;
         JoinedPiece piece = pieceOf(voxels, brick);
-        piece.empty = true;
-        piece.texels = textures.texel(voxels, brick, gradients);
-        if (!piece.texels) return false;
+        piece.emptyTexel = textures.texel(voxels, brick, gradients);
+        if (!piece.emptyTexel) return false;
         pieces.push_back(std::move(piece));
     }
     for (const std::int64_t brick : leftOut.cutAway) {
         if (!isPassed(brick)) continue;
-        const BrickTexture texture = textures.get(voxels, brick, gradients);
-        if (!texture.texture) return false;
-        pieces.push_back(pieceOf(voxels, brick, texture, gradients));
+        pieces.push_back(pieceOf(voxels, brick, gradients));
     }
     return true;
 }
 
 std::shared_ptr<const BrickCells> joinCells(const VolumeInstance& volume, const Voxels& voxels,
-                                            BrickTextures& textures, const OccupancyQuery& query)
+                                            BrickResidency& textures, const OccupancyQuery& query)
 {
     std::vector<CellCache::Part> parts;
     for (const SelectedBrick& brick : volume.bricks) {
@@ -139,30 +139,33 @@ void joinBricks(VolumeInstance& volume, const Voxels& voxels, const OccupancyQue
 {
     if (leftOut.unreadable || !canBeJoined(volume, voxels, visitor)) return;
     const bool gradients = volume.look->features.gradientTexture;
-    const osg::ref_ptr<BrickTextures> textures = BrickTextures::of(voxels);
+    const osg::ref_ptr<BrickResidency> textures = BrickResidency::of(voxels);
     SelectedBrick all;
     all.box = unionOf(volume.bricks);
     all.cells = joinCells(volume, voxels, *textures, query);
     if (!isWorthJoining(volume, all, textures->isJoined(voxels, gradients))) return;
     auto joined = std::make_shared<JoinedBricks>();
     if (!addLeftOut(volume, voxels, *textures, leftOut, all.box, joined->pieces)) return;
+    joined->texture = textures->joined(voxels, gradients);
+    if (joined->texture->isRefused(visitor.getState()->getContextID())) return;
     for (const SelectedBrick& brick : volume.bricks)
-        joined->pieces.push_back(pieceOf(voxels, brick.index, brick.texture, gradients));
-    const SelectedBrick& first = volume.bricks.front();
-    joined->texture = textures->joined(voxels, *first.texture.texture->getImage(), gradients);
+        joined->pieces.push_back(pieceOf(voxels, brick.index, gradients));
+    joined->voxels = &voxels;
+    joined->gradients = gradients;
     const glm::vec3 size(voxels.getSize());
     all.clipBox = voxels.getLayout().extent();
-    all.texture.texture = joined->texture->texture();
     all.textureScale = 1.0f / size;
     all.textureOffset = 0.5f / size;
     all.brickCount = static_cast<int>(volume.bricks.size());
-    all.joined = std::move(joined);
     if (all.cells) {
         volume.cellSize = all.cells->cellSize;
         volume.cellCount = all.cells->cellCount;
         volume.occupiedCells = all.cells->occupiedCount;
     }
-    volume.bricks.assign(1, std::move(all));
+    joined->apart = std::move(volume.bricks);
+    all.joined = std::move(joined);
+    volume.bricks.clear();
+    volume.bricks.push_back(std::move(all));
 }
 
 } // namespace render

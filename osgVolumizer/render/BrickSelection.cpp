@@ -1,6 +1,7 @@
 #include "BrickSelection.h"
 
 #include "BrickJoining.h"
+#include "BrickResidency.h"
 
 #include <osgUtil/CullVisitor>
 
@@ -36,7 +37,7 @@ OccupancyQuery queryOf(const VolumeInstance& volume, const Voxels& voxels)
 }
 
 // Cuts a brick down to where it shows something; false where that is nowhere.
-bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickTextures& textures,
+bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickResidency& textures,
                    const OccupancyQuery& query, SelectedBrick& brick, LeftOutBricks& leftOut)
 {
     if (voxels.getComponents() == 1) {
@@ -91,10 +92,12 @@ bool isWorthSkipping(const VolumeInstance& volume)
 void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
 {
     const core::BrickLayout& layout = voxels.getLayout();
-    const osg::ref_ptr<BrickTextures> textures = BrickTextures::of(voxels);
+    const osg::ref_ptr<BrickResidency> textures = BrickResidency::of(voxels);
     const PreparedGeometry& prepared = *volume.prepared;
     const ProgramFeatures& features = volume.look->features;
     const OccupancyQuery query = queryOf(volume, voxels);
+    const osg::FrameStamp* stamp = visitor.getFrameStamp();
+    const unsigned frame = stamp ? stamp->getFrameNumber() : 0;
     LeftOutBricks leftOut;
     for (std::int64_t i = 0; i < layout.brickCount(); ++i) {
         const core::BrickPlace place = layout.brick(i);
@@ -112,8 +115,11 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVis
         // Gathered rays count every value, shown or not.
         if (!features.gathers() && !cutToOccupied(volume, voxels, *textures, query, brick, leftOut))
             continue;
-        brick.texture = textures->get(voxels, i, features.gradientTexture);
-        if (brick.texture.texture)
+        brick.texels.texture = textures->get(voxels, i, features.gradientTexture, frame);
+        brick.texels.voxels = &voxels;
+        brick.texels.index = i;
+        brick.texels.gradients = features.gradientTexture;
+        if (brick.texels.texture)
             volume.bricks.push_back(std::move(brick));
         else
             leftOut.unreadable = true;

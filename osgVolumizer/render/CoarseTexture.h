@@ -1,5 +1,6 @@
 #pragma once
 
+#include <osg/Image>
 #include <osg/Texture3D>
 
 #include <glm/vec3.hpp>
@@ -7,21 +8,19 @@
 namespace osgVolumizer {
 namespace render {
 
-/// A 3D texture for a context whose textures are smaller than the brick: samples of the brick's
-/// trilinear interpolant at equal distances, the outermost ones in place.
+/// A 3D texture for a brick, perhaps for a context whose textures are smaller than that: then
+/// samples of the brick's trilinear interpolant at equal distances, the outermost ones in place.
 struct CoarseTexture
 {
-    osg::ref_ptr<osg::Texture3D> texture;
-    /// Of what texture coordinates of the brick's texture become here.
+    osg::ref_ptr<osg::Texture3D> texture; ///< null where the context has none
+    /// Of what texture coordinates of the brick become here.
     glm::vec3 scale{1.0f}, offset{0.0f};
 };
 
-/// The brick's texture itself, where it is no larger than `largest` texels a side, else a coarser
-/// one, made on the first call and kept by the brick's texture. `largest` >= 2. Thread safe.
-CoarseTexture fittingTexture(osg::Texture3D& brick, int largest);
-/// Follow osg::Object: the coarser ones of a brick.
-void resizeCoarseTextures(osg::Texture3D& brick, unsigned maximum);
-void releaseCoarseTextures(osg::Texture3D& brick, osg::State* state);
+/// Those samples, as floats; `size` is no larger than the image on any axis.
+osg::ref_ptr<osg::Image> coarserTexels(const osg::Image& texels, const glm::ivec3& size);
+/// A texture of such samples, or of all of a brick's.
+CoarseTexture coarseTexture(osg::Texture3D& texture, const glm::ivec3& brickSize);
 
 } // namespace render
 } // namespace osgVolumizer

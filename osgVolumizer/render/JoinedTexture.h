@@ -1,17 +1,21 @@
 #pragma once
 
 #include "ContextLimits.h"
+#include "TexelFormat.h"
 
 #include "../core/geometry/Box.h"
 
 #include <osg/Image>
 #include <osg/RenderInfo>
 #include <osg/Texture3D>
-#include <osg/buffered_value>
 
+#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 namespace osgVolumizer {
@@ -22,28 +26,41 @@ struct JoinedPiece
 {
     std::int64_t brick = 0;
     unsigned modifiedCount = 0;
-    /// The brick's texels; or one texel, that stands for all of a brick that shows nothing.
-    osg::ref_ptr<const osg::Image> texels;
-    bool empty = false;
+    /// One texel that stands for all of a brick that shows nothing; null where all are needed.
+    osg::ref_ptr<const osg::Image> emptyTexel;
     core::Box3i samples; ///< voxel frame, half-open; that are written
-    /// Of the image's first texel, voxel frame.
-    glm::ivec3 imageOrigin{0};
+    /// Of the first of the brick's texels, voxel frame.
+    glm::ivec3 texelsOrigin{0};
 };
 
 /// One 3D texture for all bricks of a volume: drawn as one brick, but read, uploaded and changed
-/// brick by brick. Per context it has those bricks that its views have needed. Thread safe.
+/// brick by brick. Per context it has those bricks that its views have needed. Keeps no texels:
+/// they are asked for when a context lacks them. Thread safe.
 class JoinedTexture : public osg::Referenced
 {
 public:
-    /// \param texture without an image; gets its size and format from the voxels' size and from an
-    /// image of one of the bricks
-    JoinedTexture(osg::Texture3D* texture, const glm::ivec3& size, const osg::Image& like);
+    /// A brick's texels; null where the source fails.
+    using Load = std::function<osg::ref_ptr<const osg::Image>(std::int64_t brick)>;
 
-    osg::Texture3D* texture() const { return _texture.get(); }
+    /// \param size of the volume, samples
+    JoinedTexture(const TexelFormat& format, const glm::ivec3& size) : _format(format), _size(size)
+    {
+    }
+
     /// Applies the texture to a unit, after writing those of the pieces that the context lacks;
-    /// counts what is uploaded. Call in the draw thread.
-    void apply(osg::RenderInfo& renderInfo, const ContextLimits& limits,
-               const std::vector<JoinedPiece>& pieces, unsigned unit);
+    /// counts what is uploaded. False where the card refuses the texture. Call in the draw thread.
+    bool apply(osg::RenderInfo& renderInfo, const ContextLimits& limits,
+               const std::vector<JoinedPiece>& pieces, const Load& load, unsigned unit);
+    /// Whether the context has refused the texture.
+    bool isRefused(unsigned contextId) const;
+    /// Whether the context has the texels of a brick in one state of its data, or what stands for
+    /// them.
+    bool has(unsigned contextId, std::int64_t brick, unsigned modifiedCount) const;
+    bool isIn(unsigned contextId) const;
+    std::int64_t bytes() const;
+
+    void resizeGLObjectBuffers(unsigned int maximum);
+    void releaseGLObjects(osg::State* state);
 
 private:
     struct Written
@@ -52,20 +69,27 @@ private:
         bool empty;
         core::Box3i samples;
     };
-    using Contents = std::map<std::int64_t, Written>; ///< by brick
+    struct Contents
+    {
+        std::mutex mutex;
+        osg::ref_ptr<osg::Texture3D> texture;
+        std::map<std::int64_t, Written> bricks;
+        std::atomic<bool> refused{false};
 
-    static void write(osg::State& state, const JoinedPiece& piece, Contents& contents);
+        bool lacks(const JoinedPiece& piece) const;
+    };
 
-    osg::ref_ptr<osg::Texture3D> _texture;
-    std::mutex _mutex;
-    osg::buffered_object<Contents> _contents;
-};
+    std::shared_ptr<Contents> find(unsigned contextId) const;
+    std::shared_ptr<Contents> contentsIn(unsigned contextId);
+    std::vector<std::pair<unsigned, std::shared_ptr<Contents>>> allContents() const;
+    bool make(osg::State& state, const ContextLimits& limits, Contents& contents,
+              unsigned unit) const;
+    static void writeEmpty(osg::State& state, const JoinedPiece& piece, Contents& contents);
 
-/// The bricks of a volume that a view needs, in the texture that they share.
-struct JoinedBricks
-{
-    osg::ref_ptr<JoinedTexture> texture;
-    std::vector<JoinedPiece> pieces;
+    const TexelFormat _format;
+    const glm::ivec3 _size;
+    mutable std::mutex _mutex;
+    std::map<unsigned, std::shared_ptr<Contents>> _contents; ///< by context
 };
 
 } // namespace render

@@ -41,7 +41,7 @@ std::vector<Paint> paintsOf(const VolumeInstance& volume)
     std::vector<Paint> result;
     for (const SelectedBrick& brick : volume.bricks) {
         Paint paint;
-        paint.voxels = brick.texture;
+        paint.voxels = brick.texels;
         paint.table = volume.look->table;
         paint.textureScale = brick.textureScale;
         paint.textureOffset = brick.textureOffset;
@@ -124,16 +124,19 @@ void setPaints(osg::RenderInfo& renderInfo, const ContextLimits& limits, const U
         const std::string prefix = "paint" + std::to_string(i);
         const auto name = [&prefix](const char* suffix) { return prefix + suffix; };
         const unsigned unit = firstUnit + 2 * static_cast<unsigned>(i);
-        const CoarseTexture voxels = applyBrick(renderInfo, limits, paint.voxels, unit);
-        if (paint.table.texture) state.applyTextureAttribute(unit + 1, paint.table.texture.get());
+        const CoarseTexture voxels = paint.voxels.apply(renderInfo, limits, unit);
+        const bool complete =
+            voxels.texture &&
+            (!paint.table.texture || applyTable(state, paint.table.texture.get(), unit + 1));
         uniforms.set(name("Voxels").c_str(), static_cast<int>(unit));
         uniforms.set(name("Table").c_str(), static_cast<int>(unit + 1));
         uniforms.set(name("FromFrame").c_str(), paint.fromFrame);
         uniforms.set(name("TextureScale").c_str(), paint.textureScale * voxels.scale);
         uniforms.set(name("TextureOffset").c_str(),
                      paint.textureOffset * voxels.scale + voxels.offset);
+        // What the card has no memory for paints nothing.
         uniforms.set(name("Min").c_str(), paint.boxMin);
-        uniforms.set(name("Max").c_str(), paint.boxMax);
+        uniforms.set(name("Max").c_str(), complete ? paint.boxMax : paint.boxMin);
         uniforms.set(name("Planes").c_str(), paint.planes);
         uniforms.set(name("ValueToEntry").c_str(), paint.valueToEntry);
         uniforms.set(name("LastEntry").c_str(), static_cast<float>(paint.table.count - 1));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "BrickTextures.h"
+#include "DrawnBrick.h"
 #include "TableTextures.h"
 
 #include <osg/RenderInfo>
@@ -25,7 +25,7 @@ struct Paint
     /// More bricks, or half-spaces of its region, than these are not painted with.
     static constexpr int MAXIMUM_COUNT = 4, MAXIMUM_PLANES = 8;
 
-    BrickTexture voxels;
+    DrawnBrick voxels;
     TableTexture table;
     glm::dmat4 fromFrame{1.0};                         ///< frame of the painted volume -> voxels
     glm::vec3 textureScale{1.0f}, textureOffset{0.0f}; ///< voxel -> texture coordinate

@@ -1,6 +1,6 @@
 #include "SamplingChoice.h"
 
-#include "BrickTextures.h"
+#include "BrickResidency.h"
 
 #include "../core/voxels/VoxelData.h"
 #include "../core/voxels/VoxelDispatch.h"
@@ -75,7 +75,7 @@ public:
         : _nearest(nearest), _bricks(std::size_t(voxels.getLayout().brickCount()))
     {
         const osg::Vec2d range = voxels.getRange();
-        const osg::ref_ptr<BrickTextures> textures = BrickTextures::of(voxels);
+        const osg::ref_ptr<BrickResidency> textures = BrickResidency::of(voxels);
         OccupancyQuery query;
         query.table = &table;
         const core::BrickLayout& layout = voxels.getLayout();
@@ -88,7 +88,7 @@ public:
             brick.shown = table.shows((values.first - range.x()) / width,
                                       (values.second - range.x()) / width);
             if (!brick.shown) continue;
-            brick.block = voxels.getBrick(index);
+            brick.block = BrickResidency::load(voxels, index);
             brick.view.data = brick.block.data;
             brick.view.type = voxels.getType();
             brick.view.size = brick.place.samples.size();

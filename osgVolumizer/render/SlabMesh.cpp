@@ -34,8 +34,7 @@ constexpr int CUT = 6;
 BrickBatch batchOf(const SelectedBrick& brick)
 {
     BrickBatch batch;
-    batch.texture = brick.texture.texture;
-    batch.textureBytes = brick.texture.bytes;
+    batch.brick = brick.texels;
     batch.clipMin = glm::vec3(brick.box.min);
     batch.clipMax = glm::vec3(brick.box.max);
     batch.brickMin = glm::vec3(brick.clipBox.min);

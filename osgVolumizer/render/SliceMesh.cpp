@@ -165,8 +165,7 @@ std::shared_ptr<const VolumeMesh> SlicedVolume::makeMesh(const VolumeInstance& v
     for (std::size_t i = 0; i < mesh->batches.size() && !volume.bricks.empty(); ++i) {
         const SelectedBrick& brick = volume.bricks[static_cast<std::size_t>(triangles->bricks[i])];
         BrickBatch& batch = mesh->batches[i];
-        batch.texture = brick.texture.texture;
-        batch.textureBytes = brick.texture.bytes;
+        batch.brick = brick.texels;
         batch.textureScale = brick.textureScale;
         batch.textureOffset = brick.textureOffset;
     }

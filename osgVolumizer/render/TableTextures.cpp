@@ -1,5 +1,8 @@
 #include "TableTextures.h"
 
+#include "Allocation.h"
+#include "ReportOnce.h"
+
 #include "../core/transfer/PreIntegration.h"
 
 #include <osg/Notify>
@@ -10,6 +13,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace osgVolumizer {
 namespace render {
@@ -67,11 +71,12 @@ void countShown(const std::vector<glm::vec4>& texels, TableTexture& table)
     table.shownGaps = std::move(gaps);
 }
 
-TableTexture makeTable(const LookupTable& table, const osg::Vec2d& range,
-                       VolumeAppearance::Lookup lookup)
+std::shared_ptr<const TableTexture> makeTable(const LookupTable& table, const osg::Vec2d& range,
+                                              VolumeAppearance::Lookup lookup)
 {
     static std::atomic<unsigned> nextId{1};
-    TableTexture result;
+    auto made = std::make_shared<TableTexture>();
+    TableTexture& result = *made;
     result.function = table.getNormalizedFunction(range);
     result.id = nextId++;
     result.integrals = lookup == VolumeAppearance::PREINTEGRATED ||
@@ -95,8 +100,51 @@ TableTexture makeTable(const LookupTable& table, const osg::Vec2d& range,
     }
     countShown(texels, result);
     result.texture = makeTexture(texels);
-    return result;
+    return made;
 }
+
+// What a lookup table's textures are made from.
+struct TableKey
+{
+    unsigned modifiedCount;
+    osg::Vec2d range;
+    VolumeAppearance::Lookup lookup;
+    bool operator==(const TableKey& o) const
+    {
+        return modifiedCount == o.modifiedCount && range == o.range && lookup == o.lookup;
+    }
+};
+
+// The textures of one lookup table that an appearance still has.
+class SharedTables : public RenderData
+{
+public:
+    static osg::ref_ptr<SharedTables> of(const LookupTable& table)
+    {
+        const auto data = table.renderData().getOrCreate(
+            []() -> osg::ref_ptr<RenderData> { return new SharedTables; });
+        return static_cast<SharedTables*>(data.get());
+    }
+    std::shared_ptr<const TableTexture> get(const LookupTable& table, const TableKey& key)
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        std::shared_ptr<const TableTexture> result;
+        _tables.remove_if([](const auto& known) { return known.second.expired(); });
+        for (const auto& known : _tables)
+            if (known.first == key) result = known.second.lock();
+        if (result) return result;
+        result = makeTable(table, key.range, key.lookup);
+        _tables.emplace_front(key, result);
+        return result;
+    }
+    // Appearances do that.
+    void resizeGLObjectBuffers(unsigned int) override {}
+    void releaseGLObjects(osg::State*) const override {}
+
+private:
+    std::mutex _mutex;
+    std::list<std::pair<TableKey, std::weak_ptr<const TableTexture>>> _tables;
+};
 
 } // namespace
 
@@ -114,6 +162,14 @@ bool TableTexture::shows(double lowFraction, double highFraction) const
            (integrals && (*shownGaps)[end] > (*shownGaps)[first]);
 }
 
+bool applyTable(osg::State& state, osg::TextureBuffer* texture, unsigned unit)
+{
+    if (applyAllocated(state, AllocationRequest::TABLE, *texture, unit)) return true;
+    reportOnce({ErrorCode::TOO_LARGE, "a lookup table is refused by the graphics card; volumes "
+                                      "with it are not drawn"});
+    return false;
+}
+
 TableTexture TableTextures::get(const LookupTable& table, const osg::Vec2d& range,
                                 VolumeAppearance::Lookup lookup)
 {
@@ -126,25 +182,26 @@ TableTexture TableTextures::get(const LookupTable& table, const osg::Vec2d& rang
             i->lookup != lookup)
             continue;
         _entries.splice(_entries.begin(), _entries, i);
-        return _entries.front().texture;
+        return *_entries.front().texture;
     }
-    _entries.push_front({&table, modified, range, lookup, makeTable(table, range, lookup)});
+    _entries.push_front({&table, modified, range, lookup,
+                         SharedTables::of(table)->get(table, {modified, range, lookup})});
     if (_entries.size() > CAPACITY) _entries.pop_back();
-    return _entries.front().texture;
+    return *_entries.front().texture;
 }
 
 void TableTextures::resizeGLObjectBuffers(unsigned int maximum)
 {
     std::lock_guard<std::mutex> lock(_mutex);
     for (auto& entry : _entries)
-        entry.texture.texture->resizeGLObjectBuffers(maximum);
+        entry.texture->texture->resizeGLObjectBuffers(maximum);
 }
 
 void TableTextures::releaseGLObjects(osg::State* state) const
 {
     std::lock_guard<std::mutex> lock(_mutex);
     for (const auto& entry : _entries)
-        entry.texture.texture->releaseGLObjects(state);
+        entry.texture->texture->releaseGLObjects(state);
 }
 
 } // namespace render

@@ -36,7 +36,12 @@ struct TableTexture
     unsigned id = 0; ///< differs for every texture ever made
 };
 
-/// Tables of one appearance, by what they were made from. Thread safe.
+/// Applies the texture of a table to a unit; false, reported once, where the card refuses it: what
+/// it is for is not drawn.
+bool applyTable(osg::State& state, osg::TextureBuffer* texture, unsigned unit);
+
+/// Tables of one appearance, by what they were made from. Those of a lookup table that appearances
+/// share are shared too. Thread safe.
 class TableTextures
 {
 public:
@@ -53,7 +58,7 @@ private:
         unsigned modifiedCount;
         osg::Vec2d range;
         VolumeAppearance::Lookup lookup;
-        TableTexture texture;
+        std::shared_ptr<const TableTexture> texture;
     };
     static constexpr std::size_t CAPACITY = 3;
 

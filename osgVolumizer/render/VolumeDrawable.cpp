@@ -1,8 +1,7 @@
 #include "VolumeDrawable.h"
 
 #include "../Error.h"
-#include "BrickCells.h"
-#include "BrickTextures.h"
+#include "BatchDrawing.h"
 #include "ContextResources.h"
 #include "ForeignState.h"
 #include "Framebuffer.h"
@@ -13,6 +12,8 @@
 #include "ScissorScope.h"
 #include "Statistics.h"
 #include "Uniforms.h"
+
+#include "../core/sampling/View.h"
 
 #include <osg/Program>
 
@@ -195,40 +196,8 @@ private:
     bool _enabled[ATTRIBUTE_COUNT] = {};
 };
 
-void drawBatch(osg::RenderInfo& renderInfo, const ContextLimits& limits, const Uniforms& uniforms,
-               const ProgramFeatures& features, const BrickBatch& batch)
-{
-    osg::State& state = *renderInfo.getState();
-    if (batch.texture) {
-        CoarseTexture voxels;
-        if (batch.joined)
-            batch.joined->texture->apply(renderInfo, limits, batch.joined->pieces, UNIT_VOXELS);
-        else
-            voxels =
-                applyBrick(renderInfo, limits, {batch.texture, batch.textureBytes}, UNIT_VOXELS);
-        uniforms.set("textureScale", batch.textureScale * voxels.scale);
-        uniforms.set("textureOffset", batch.textureOffset * voxels.scale + voxels.offset);
-    }
-    if (features.skipping) {
-        const bool known = batch.cells && batch.cells->texture;
-        state.applyTextureAttribute(UNIT_CELLS,
-                                    known ? batch.cells->texture.get() : occupiedEverywhere());
-        uniforms.set("cellOrigin", known ? batch.cells->origin : glm::vec3(0.0f));
-        uniforms.set("cellSize", known ? batch.cells->cellSize : 1e6f);
-    }
-    if (features.preIntegrated) {
-        uniforms.set("brickMin", batch.brickMin);
-        uniforms.set("brickMax", batch.brickMax);
-    }
-    uniforms.set("homogeneous", batch.cells && batch.cells->homogeneous ? 1 : 0);
-    uniforms.set("clipMin", batch.clipMin);
-    uniforms.set("clipMax", batch.clipMax);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.indexCount), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(std::size_t(batch.firstIndex) * sizeof(unsigned)));
-}
-
 void drawMesh(osg::RenderInfo& renderInfo, ContextResources& resources, const Uniforms& uniforms,
-              const VolumeMesh& mesh, const VolumeLook& look)
+              const core::View& view, const VolumeMesh& mesh, const VolumeLook& look)
 {
     osg::State& state = *renderInfo.getState();
     const osg::Depth::Function test = look.above.depthTest.function;
@@ -241,9 +210,10 @@ void drawMesh(osg::RenderInfo& renderInfo, ContextResources& resources, const Un
     {
         const BoundMesh bound(state, *state.get<osg::GLExtensions>(), resources, mesh,
                               static_cast<float>(look.step));
+        const BatchDrawing drawing{renderInfo, resources.limits, uniforms, look.features, view};
         const auto drawBatches = [&]() {
             for (const BrickBatch& batch : mesh.batches)
-                drawBatch(renderInfo, resources.limits, uniforms, look.features, batch);
+                drawBatch(drawing, batch);
         };
         if (look.scissors.empty()) {
             drawBatches();
@@ -338,9 +308,9 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     setLook(uniforms, *_look, *rays);
     if (_look->features.shading) setShading(uniforms, *_look, *rays, toEye, state);
     if (_look->features.opaqueDepth) setDepthTextures(state, uniforms, *rays, *_look, *resources);
-    if (_look->table.texture) state.applyTextureAttribute(UNIT_TABLE, _look->table.texture.get());
+    if (_look->table.texture && !applyTable(state, _look->table.texture.get(), UNIT_TABLE)) return;
     setPaints(renderInfo, resources->limits, uniforms, _look->paints, UNIT_FIRST_PAINT);
-    drawMesh(renderInfo, *resources, uniforms, *_mesh, *_look);
+    drawMesh(renderInfo, *resources, uniforms, {toEye, projection}, *_mesh, *_look);
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
     reapplyInNextFrame(state);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "DrawnBrick.h"
 #include "LeafState.h"
 #include "Paint.h"
 #include "SceneLights.h"
@@ -29,9 +30,8 @@ struct JoinedBricks;
 /// What is drawn from one brick: a run of triangles, and the place of the brick.
 struct BrickBatch
 {
-    osg::ref_ptr<osg::Texture3D> texture;       ///< null without voxels
-    std::shared_ptr<const JoinedBricks> joined; ///< where it is the texture of several bricks
-    std::size_t textureBytes = 0;
+    DrawnBrick brick;                                  ///< none without voxels, and where joined
+    std::shared_ptr<const JoinedBricks> joined;        ///< several bricks in one texture; else null
     std::shared_ptr<const BrickCells> cells;           ///< null where nothing is known
     glm::vec3 clipMin{0.0f}, clipMax{0.0f};            ///< frame; of what is drawn
     glm::vec3 brickMin{0.0f}, brickMax{0.0f};          ///< frame; of what the texture has

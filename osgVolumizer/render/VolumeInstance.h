@@ -1,6 +1,7 @@
 #pragma once
 
-#include "BrickTextures.h"
+#include "BrickCells.h"
+#include "DrawnBrick.h"
 #include "PreparedGeometry.h"
 #include "TableTextures.h"
 #include "VolumeDrawable.h"
@@ -22,7 +23,7 @@ struct SelectedBrick
     std::int64_t index = 0;
     core::Box3d box;     ///< frame; clip box, cut down to the geometry and to what shows
     core::Box3d clipBox; ///< voxel frame
-    BrickTexture texture;
+    DrawnBrick texels;   ///< none where joined
     glm::vec3 textureScale{1.0f}, textureOffset{0.0f};
     std::shared_ptr<const BrickCells> cells;    ///< null where nothing is known
     std::shared_ptr<const JoinedBricks> joined; ///< null for one brick with a texture of its own

@@ -2,10 +2,12 @@
 #include "Objects.h"
 #include "Report.h"
 
+#include <osgVolumizer/Error.h>
 #include <osgVolumizer/ReadVoxels.h>
 #include <osgVolumizer/Voxels.h>
 
 #include <osgDB/ObjectWrapper>
+#include <osgDB/Registry>
 
 namespace osgVolumizer {
 namespace serializers {
@@ -26,9 +28,30 @@ bool readSource(osgDB::InputStream& is, Voxels& voxels)
     return true;
 }
 
+bool isSerializable(const VoxelSource& source)
+{
+    const std::string name = std::string(source.libraryName()) + "::" + source.className();
+    return osgDB::Registry::instance()->getObjectWrapperManager()->findWrapper(name) != nullptr;
+}
+
+// The voxels of a source that has no form in a scene file, such as a file's.
+osg::ref_ptr<MemoryVoxelSource> inMemory(const VoxelSource& source)
+{
+    osg::ref_ptr<MemoryVoxelSource> copy = new MemoryVoxelSource;
+    const VoxelSource::Description description = source.describe();
+    Status status = copy->allocate(description);
+    if (status.ok()) status = source.read({glm::ivec3(0), description.size}, copy->data());
+    if (!status.ok()) reportError(status);
+    return copy;
+}
+
 bool writeSource(osgDB::OutputStream& os, const Voxels& voxels)
 {
-    writeObject(os, voxels.getSource());
+    const VoxelSource& source = *voxels.getSource();
+    if (isSerializable(source))
+        writeObject(os, &source);
+    else
+        writeObject(os, inMemory(source).get());
     return true;
 }
 

@@ -248,6 +248,52 @@ TEST_F(ReadVoxels, RawFiles)
     EXPECT_EQ("engine.raw.4,3,2,int16,3,little", (*found)->getFileName());
 }
 
+TEST_F(ReadVoxels, RawFilesAreReadBrickByBrick)
+{
+    // More than one piece of the reader's buffer; rows that are whole, short, and long.
+    const glm::ivec3 size(24000, 90, 3);
+    std::string bytes = "HEADER";
+    for (int i = 0; i < size.x * size.y * size.z; ++i) {
+        bytes += static_cast<char>((i * 7) >> 8);
+        bytes += static_cast<char>(i * 7);
+    }
+    const std::string file = writeBytes("v.raw", bytes);
+    const auto read = readVoxels(file + ".24000,90,3,uint16,6,big");
+    ASSERT_TRUE(read.ok()) << read.status.text;
+    const VoxelSource& source = *(*read)->getSource();
+    const core::Box3i boxes[] = {{{0, 0, 0}, size},
+                                 {{5, 1, 1}, {9, 88, 3}},
+                                 {{100, 80, 0}, {23000, 90, 1}},
+                                 {{0, 40, 2}, {24000, 41, 3}},
+                                 {{23999, 89, 2}, {24000, 90, 3}}};
+    for (const core::Box3i& box : boxes) {
+        const glm::ivec3 n = box.size();
+        std::vector<std::uint16_t> values(std::size_t(n.x) * std::size_t(n.y) * std::size_t(n.z));
+        ASSERT_TRUE(source.read(box, values.data()).ok());
+        const std::uint16_t* value = values.data();
+        int wrong = 0;
+        for (int z = box.min.z; z < box.max.z; ++z)
+            for (int y = box.min.y; y < box.max.y; ++y)
+                for (int x = box.min.x; x < box.max.x; ++x)
+                    wrong +=
+                        *value++ != static_cast<std::uint16_t>(((z * size.y + y) * size.x + x) * 7);
+        EXPECT_EQ(0, wrong) << box.min.x << " " << n.x;
+    }
+    std::uint16_t value = 0;
+    EXPECT_FALSE(source.read({{0, 0, 2}, {1, 1, 4}}, &value).ok());
+    // Nothing of the file is held until a brick is asked for, and then that.
+    EXPECT_EQ(0u, (*read)->getCachedBytes());
+    ASSERT_TRUE((*read)->setBrickSize({100, 90, 3}).ok());
+    EXPECT_TRUE((*read)->getBrick(7));
+    EXPECT_EQ(2u * 100 * 90 * 3, (*read)->getCachedBytes());
+    // A file that has gone is still there for who has it open; one that is cut short is not.
+    std::filesystem::resize_file(file, 1000);
+    const Status cut = source.read(boxes[1], std::vector<std::uint16_t>(4 * 87 * 2).data());
+    EXPECT_EQ(ErrorCode::FILE_UNREADABLE, cut.code);
+    EXPECT_TRUE(names(cut, "v.raw")) << cut.text;
+    EXPECT_TRUE(names(cut, std::to_string(bytes.size()))) << cut.text;
+}
+
 TEST_F(ReadVoxels, OptionsApplyAndAreKept)
 {
     const std::string file = writeBytes("v.raw", std::string(64 * 4, 'x'));

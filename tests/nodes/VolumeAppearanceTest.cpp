@@ -1,5 +1,8 @@
 #include <osgVolumizer/Error.h>
 #include <osgVolumizer/VolumeAppearance.h>
+#include <osgVolumizer/render/TableTextures.h>
+
+#include <osg/observer_ptr>
 
 #include <gtest/gtest.h>
 
@@ -110,8 +113,37 @@ TEST(VolumeAppearance, CopiesShareVoxelsAndTable)
     EXPECT_EQ(copy->getMaximumSamples(), 77);
     EXPECT_EQ(copy->getOpacityUnit(), 3.0);
     EXPECT_EQ(copy->getNumChildren(), 1u);
-    // The renderer's textures are not shared.
     EXPECT_NE(&copy->tableTextures(), &appearance->tableTextures());
+}
+
+TEST(VolumeAppearance, OneTableHasOneTextureWhoeverHasIt)
+{
+    const osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance, b = new VolumeAppearance;
+    b->setLookupTable(a->getLookupTable());
+    const osg::ref_ptr<LookupTable> table = a->getLookupTable();
+    const osg::Vec2d range(0.0, 1.0);
+    const auto textureOf = [&](VolumeAppearance& appearance, const osg::Vec2d& of) {
+        return appearance.tableTextures()
+            .get(*table, of, VolumeAppearance::AFTER_INTERPOLATION)
+            .texture;
+    };
+    const osg::observer_ptr<osg::TextureBuffer> first = textureOf(*a, range).get();
+    EXPECT_EQ(textureOf(*b, range).get(), first.get());
+    // Of another range (in fractions it is the same function), or of a changed table: another one.
+    EXPECT_NE(textureOf(*b, osg::Vec2d(0.0, 2.0)).get(), first.get());
+    EXPECT_EQ(textureOf(*b, range).get(), first.get());
+    table->setRamp(0.3, 0.1);
+    const osg::observer_ptr<osg::TextureBuffer> second = textureOf(*a, range).get();
+    EXPECT_NE(second.get(), first.get());
+    EXPECT_EQ(textureOf(*b, range).get(), second.get());
+    // Nothing outlives the appearances that use it, and these keep no more than a few.
+    for (int i = 0; i < 4; ++i) {
+        table->setRamp(0.3, 0.2 + 0.1 * i);
+        textureOf(*a, range);
+        textureOf(*b, range);
+    }
+    EXPECT_FALSE(first.valid());
+    EXPECT_FALSE(second.valid());
 }
 
 } // namespace

@@ -122,6 +122,42 @@ TEST(Voxels, DirtyMakesANewBlock)
     EXPECT_GT(voxels->getModifiedCount(0), before);
 }
 
+TEST(Voxels, WhatIsKeptIsBoundedAndTheLastUsed)
+{
+    // 64 bricks of 1 MiB and some.
+    osg::ref_ptr<FormulaSource> source = new FormulaSource({260, 260, 500});
+    osg::ref_ptr<Voxels> voxels = new Voxels(source.get());
+    ASSERT_TRUE(voxels->setBrickSize({66, 66, 126}).ok());
+    const std::int64_t bricks = voxels->getLayout().brickCount();
+    ASSERT_EQ(64, bricks);
+    const Voxels::Block held = voxels->getBrick(0);
+    std::vector<std::uint16_t> first;
+    for (std::size_t i = 0; i < 100; ++i)
+        first.push_back(at(held, i));
+    for (std::int64_t i = 1; i < bricks; ++i) {
+        ASSERT_TRUE(voxels->getBrick(i));
+        EXPECT_LE(voxels->getCachedBytes(), Voxels::CACHE_BYTES);
+    }
+    EXPECT_GT(voxels->getCachedBytes(), Voxels::CACHE_BYTES / 2);
+    EXPECT_EQ(bricks, source->reads);
+    // The last one is there, the first one is read again, and the same.
+    EXPECT_TRUE(voxels->getBrick(bricks - 1));
+    EXPECT_EQ(bricks, source->reads);
+    const Voxels::Block again = voxels->getBrick(0);
+    EXPECT_EQ(bricks + 1, source->reads);
+    for (std::size_t i = 0; i < 100; ++i) {
+        EXPECT_EQ(first[i], at(again, i));
+        EXPECT_EQ(first[i], at(held, i));
+    }
+    // Ranges are kept whatever becomes of the samples.
+    for (int pass = 0; pass < 2; ++pass)
+        for (std::int64_t i = 0; i < bricks; ++i)
+            voxels->getBrickRange(i);
+    EXPECT_LE(source->reads, 2 * bricks + 1);
+    voxels->dirty();
+    EXPECT_EQ(0u, voxels->getCachedBytes());
+}
+
 TEST(Voxels, ReleasedBricksAreReadAgainAndKeepTheirRange)
 {
     osg::ref_ptr<FormulaSource> source = new FormulaSource({9, 5, 5});
@@ -288,7 +324,7 @@ TEST(Voxels, CopiesShareTheSource)
 
 TEST(Voxels, RenderDataIsMadeOnceAndForwardedTo)
 {
-    struct Data : Voxels::RenderData
+    struct Data : RenderData
     {
         void resizeGLObjectBuffers(unsigned int maximum) override { resized = maximum; }
         void releaseGLObjects(osg::State*) const override { ++released; }
@@ -297,14 +333,14 @@ TEST(Voxels, RenderDataIsMadeOnceAndForwardedTo)
     };
     osg::ref_ptr<Voxels> voxels = new Voxels;
     voxels->releaseGLObjects(); // none yet
-    EXPECT_FALSE(voxels->getRenderData().valid());
+    EXPECT_FALSE(voxels->renderData().get().valid());
     int made = 0;
     const auto make = [&] {
         ++made;
-        return osg::ref_ptr<Voxels::RenderData>(new Data);
+        return osg::ref_ptr<RenderData>(new Data);
     };
-    const auto data = voxels->getOrCreateRenderData(make);
-    EXPECT_EQ(data, voxels->getOrCreateRenderData(make));
+    const auto data = voxels->renderData().getOrCreate(make);
+    EXPECT_EQ(data, voxels->renderData().getOrCreate(make));
     EXPECT_EQ(1, made);
     voxels->resizeGLObjectBuffers(7);
     voxels->releaseGLObjects();

@@ -1,6 +1,7 @@
 #include "SerializerFixture.h"
 
 #include <osgVolumizer/LookupTable.h>
+#include <osgVolumizer/ReadVoxels.h>
 
 #include <osg/MatrixTransform>
 
@@ -224,6 +225,24 @@ TEST_P(SerializerTest, InlineVoxelsKeepEveryByteOfEveryType)
             EXPECT_TRUE(sameVoxels(x, y)) << voxelTypeName(x.getType());
         }
     EXPECT_TRUE(errors().empty()) << errors();
+}
+
+TEST_P(SerializerTest, VoxelsOfAFileCanBeWrittenInline)
+{
+    std::string bytes;
+    for (int i = 0; i < 5 * 3 * 7; ++i)
+        bytes += static_cast<char>(2 * i);
+    writeFile("v.raw", bytes);
+    const auto read = readVoxels(path("v.raw") + ".5,3,7,uint8");
+    ASSERT_TRUE(read.ok()) << read.status.text;
+    (*read)->setFileName("");
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    a->setVoxels(read->get());
+    const auto b = roundTrip(*a);
+    ASSERT_TRUE(b && b->getVoxels() && b->getVoxels()->valid()) << errors();
+    const auto* source = dynamic_cast<const MemoryVoxelSource*>(b->getVoxels()->getSource());
+    ASSERT_TRUE(source && source->sizeInBytes() == bytes.size());
+    EXPECT_EQ(std::memcmp(source->data(), bytes.data(), bytes.size()), 0);
 }
 
 TEST_P(SerializerTest, MoreThanOneChunkOfVoxels)

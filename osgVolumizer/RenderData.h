@@ -1,0 +1,51 @@
+#pragma once
+
+#include <osg/Referenced>
+#include <osg/State>
+#include <osg/ref_ptr>
+
+#include <functional>
+#include <mutex>
+
+namespace osgVolumizer {
+
+/// What the renderer keeps with an object of the scene, for as long as that lives. Every method may
+/// be called from several threads.
+class RenderData : public osg::Referenced
+{
+public:
+    virtual void resizeGLObjectBuffers(unsigned int maximum) = 0;
+    virtual void releaseGLObjects(osg::State* state) const = 0;
+
+protected:
+    ~RenderData() override = default;
+};
+
+/// Where an object has it. Thread safe. A copy of the object has none of the original's.
+class RenderDataSlot
+{
+public:
+    RenderDataSlot() = default;
+    RenderDataSlot(const RenderDataSlot&) = delete;
+    RenderDataSlot& operator=(const RenderDataSlot&) = delete;
+
+    /// Null until it is made.
+    osg::ref_ptr<RenderData> get() const
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        return _data;
+    }
+    /// Calls `make` when there is none; one caller only does.
+    osg::ref_ptr<RenderData> getOrCreate(const std::function<osg::ref_ptr<RenderData>()>& make)
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        if (!_data) _data = make();
+        return _data;
+    }
+
+private:
+    mutable std::mutex _mutex;
+    osg::ref_ptr<RenderData> _data;
+};
+
+} // namespace osgVolumizer

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "JoinedTexture.h"
+#include "VolumeInstance.h"
+
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+/// The bricks of a volume that a view needs, in the texture that they share.
+struct JoinedBricks
+{
+    osg::ref_ptr<JoinedTexture> texture;
+    std::vector<JoinedPiece> pieces;
+    osg::ref_ptr<const Voxels> voxels;
+    bool gradients = false;
+    std::vector<SelectedBrick> apart; ///< to draw one by one where the card refuses the texture
+};
+
+} // namespace render
+} // namespace osgVolumizer
