@@ -217,7 +217,12 @@ FirstDrawBufferScope::FirstDrawBufferScope(osg::GLExtensions& gl,
                                            const std::vector<GLenum>& drawBuffers)
     : _gl(gl), _drawBuffers(drawBuffers)
 {
-    if (_drawBuffers.size() > 1) _gl.glDrawBuffers(1, _drawBuffers.data());
+    if (_drawBuffers.size() < 2) return;
+    _gl.glDrawBuffers(1, _drawBuffers.data());
+    // Mesa asks only when blending changes whether blending of two sources fits the draw buffers.
+    if (!glIsEnabled(GL_BLEND)) return;
+    glDisable(GL_BLEND);
+    glEnable(GL_BLEND);
 }
 
 FirstDrawBufferScope::~FirstDrawBufferScope()
