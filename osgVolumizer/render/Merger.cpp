@@ -125,39 +125,39 @@ void collectBins(osgUtil::RenderBin& bin, std::vector<osgUtil::RenderBin*>& bins
         if (sortsByDepth(nested.second)) collectBins(*nested.second, bins);
 }
 
-// Whether leaves that are not ours may leave something in the depth buffer while ours are drawn.
-bool isDepthWritten(const std::vector<osgUtil::RenderLeaf*>& leaves,
-                    const std::unordered_set<const osgUtil::RenderLeaf*>& replaced,
-                    const core::DepthInterval& ends)
+// Whether something holds of any leaf that is drawn between the ends, or replaced.
+template <class Predicate>
+bool anyBetween(const std::vector<osgUtil::RenderLeaf*>& leaves,
+                const std::unordered_set<const osgUtil::RenderLeaf*>& replaced,
+                const core::DepthInterval& ends, Predicate holds)
 {
     return std::any_of(leaves.begin(), leaves.end(), [&](const osgUtil::RenderLeaf* leaf) {
-        if (dynamic_cast<const VolumeDrawable*>(leaf->getDrawable())) return false;
         const bool between = leaf->_depth >= ends.nearDepth && leaf->_depth <= ends.farDepth;
-        return (between || replaced.count(leaf)) && writesDepth(leaf->_parent);
+        return (between || replaced.count(leaf)) && holds(*leaf);
     });
 }
 
-// Whether stencil values matter to what is drawn between the ends.
-bool isStencilUsed(const std::vector<osgUtil::RenderLeaf*>& leaves,
-                   const std::unordered_set<const osgUtil::RenderLeaf*>& replaced,
-                   const core::DepthInterval& ends)
+// Tells accumulation what leaves between its ends need of the framebuffer: stencil values; and,
+// where they are not ours, what they leave in the depth buffer, and fixed-point values for logic.
+void tellNeeds(const std::vector<osgUtil::RenderLeaf*>& leaves,
+               const std::unordered_set<const osgUtil::RenderLeaf*>& replaced,
+               const core::DepthInterval& ends, Accumulation& accumulation)
 {
-    return std::any_of(leaves.begin(), leaves.end(), [&](const osgUtil::RenderLeaf* leaf) {
-        const bool between = leaf->_depth >= ends.nearDepth && leaf->_depth <= ends.farDepth;
-        return (between || replaced.count(leaf)) && isOn(leaf->_parent, GL_STENCIL_TEST, false);
-    });
-}
-
-// Whether leaves that are not ours, between ours, need the framebuffer's own fixed-point values.
-bool isLogicOpUsed(const std::vector<osgUtil::RenderLeaf*>& leaves,
-                   const std::unordered_set<const osgUtil::RenderLeaf*>& replaced,
-                   const core::DepthInterval& ends)
-{
-    return std::any_of(leaves.begin(), leaves.end(), [&](const osgUtil::RenderLeaf* leaf) {
-        if (dynamic_cast<const VolumeDrawable*>(leaf->getDrawable())) return false;
-        const bool between = leaf->_depth >= ends.nearDepth && leaf->_depth <= ends.farDepth;
-        return (between || replaced.count(leaf)) && isOn(leaf->_parent, GL_COLOR_LOGIC_OP, false);
-    });
+    const auto isForeign = [](const osgUtil::RenderLeaf& leaf) {
+        return !dynamic_cast<const VolumeDrawable*>(leaf.getDrawable());
+    };
+    if (anyBetween(leaves, replaced, ends, [&](const osgUtil::RenderLeaf& leaf) {
+            return isForeign(leaf) && writesDepth(leaf._parent);
+        }))
+        accumulation.keepDepth();
+    if (anyBetween(leaves, replaced, ends, [](const osgUtil::RenderLeaf& leaf) {
+            return isOn(leaf._parent, GL_STENCIL_TEST, false);
+        }))
+        accumulation.useStencil();
+    if (anyBetween(leaves, replaced, ends, [&](const osgUtil::RenderLeaf& leaf) {
+            return isForeign(leaf) && isOn(leaf._parent, GL_COLOR_LOGIC_OP, false);
+        }))
+        accumulation.keepFramebuffer();
 }
 
 bool mayWriteDepth(const osgUtil::RenderLeaf* leaf)
@@ -287,9 +287,7 @@ void Merger::merge(const osgUtil::RenderBin& bin, LeafList& leaves,
             counts.bricksDrawn += brick.brickCount;
     if (!made.empty()) {
         const core::DepthInterval ends = endsOf(made);
-        if (isDepthWritten(leaves, replaced, ends)) accumulation->keepDepth();
-        if (isStencilUsed(leaves, replaced, ends)) accumulation->useStencil();
-        if (isLogicOpUsed(leaves, replaced, ends)) accumulation->keepFramebuffer();
+        tellNeeds(leaves, replaced, ends, *accumulation);
         if (groups.surfaces.empty()) leaveOut(bin, leaves, visible, ends, *accumulation);
         addAccumulation(*accumulation, *visible.front()->leaf, viewport(), ends, made);
     }
