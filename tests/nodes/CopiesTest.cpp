@@ -111,7 +111,8 @@ TEST(Copies, OfIncompleteOnes)
     EXPECT_EQ(copy->getVoxels(), nullptr);
     EXPECT_NE(copy->getLookupTable(), nullptr);
     const osg::ref_ptr<Voxels> voxels = new Voxels;
-    EXPECT_FALSE(osg::clone(voxels.get(), osg::CopyOp::DEEP_COPY_ALL)->valid());
+    const osg::ref_ptr<Voxels> voxelsCopy = osg::clone(voxels.get(), osg::CopyOp::DEEP_COPY_ALL);
+    EXPECT_FALSE(voxelsCopy->valid());
 }
 
 // Voxels that two appearances share become two, each right by itself; an operator that remembers
