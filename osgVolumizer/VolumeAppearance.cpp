@@ -3,12 +3,12 @@
 #include "Error.h"
 #include "core/NumberRule.h"
 #include "core/Text.h"
-#include "render/ContextResources.h"
-#include "render/Flattening.h"
-#include "render/FrameTimes.h"
-#include "render/SamplingChoice.h"
-#include "render/SharedStateSets.h"
-#include "render/TableTextures.h"
+#include "render/context/ContextResources.h"
+#include "render/cull/Flattening.h"
+#include "render/cull/FrameTimes.h"
+#include "render/cull/SamplingChoice.h"
+#include "render/context/SharedStateSets.h"
+#include "render/textures/TableTextures.h"
 
 namespace osgVolumizer {
 

@@ -2,9 +2,9 @@
 
 #include "Error.h"
 #include "Voxels.h"
-#include "render/Cull.h"
-#include "render/Flattening.h"
-#include "render/PreparedGeometry.h"
+#include "render/cull/Cull.h"
+#include "render/cull/Flattening.h"
+#include "render/volume/GeometryCache.h"
 
 #include <osgUtil/CullVisitor>
 

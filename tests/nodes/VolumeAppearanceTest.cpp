@@ -1,6 +1,6 @@
 #include <osgVolumizer/Error.h>
 #include <osgVolumizer/VolumeAppearance.h>
-#include <osgVolumizer/render/TableTextures.h>
+#include <osgVolumizer/render/textures/TableTextures.h>
 
 #include <osg/observer_ptr>
 

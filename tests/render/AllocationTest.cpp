@@ -3,7 +3,7 @@
 #include "Volumes.h"
 
 #include <osgVolumizer/Error.h>
-#include <osgVolumizer/render/Allocation.h>
+#include <osgVolumizer/render/context/Allocation.h>
 
 #include <support/GLTest.h>
 #include <support/Shapes.h>

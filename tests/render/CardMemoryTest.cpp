@@ -3,9 +3,9 @@
 #include "Volumes.h"
 
 #include <osgVolumizer/Error.h>
-#include <osgVolumizer/render/Allocation.h>
-#include <osgVolumizer/render/BrickResidency.h>
-#include <osgVolumizer/render/ContextLimits.h>
+#include <osgVolumizer/render/context/Allocation.h>
+#include <osgVolumizer/render/textures/BrickResidency.h>
+#include <osgVolumizer/render/context/ContextLimits.h>
 
 #include <support/GLTest.h>
 

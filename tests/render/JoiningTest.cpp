@@ -2,7 +2,7 @@
 
 #include "Volumes.h"
 
-#include <osgVolumizer/render/ContextLimits.h>
+#include <osgVolumizer/render/context/ContextLimits.h>
 
 #include <support/GLTest.h>
 

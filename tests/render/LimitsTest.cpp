@@ -4,7 +4,7 @@
 
 #include <osgVolumizer/Error.h>
 #include <osgVolumizer/core/voxels/VoxelData.h>
-#include <osgVolumizer/render/ContextLimits.h>
+#include <osgVolumizer/render/context/ContextLimits.h>
 
 #include <support/GLTest.h>
 #include <support/Shapes.h>

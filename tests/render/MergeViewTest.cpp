@@ -4,7 +4,7 @@
 
 #include <support/GLTest.h>
 
-#include <osgVolumizer/render/ContextResources.h>
+#include <osgVolumizer/render/context/ContextResources.h>
 
 #include <osg/FrameBufferObject>
 #include <osgViewer/CompositeViewer>

@@ -2,8 +2,8 @@
 
 #include "Volumes.h"
 
-#include <osgVolumizer/render/BrickSelection.h>
-#include <osgVolumizer/render/VolumeProgram.h>
+#include <osgVolumizer/render/cull/BrickSelection.h>
+#include <osgVolumizer/render/draw/VolumeProgram.h>
 
 #include <support/GLTest.h>
 

@@ -2,7 +2,7 @@
 
 #include "Volumes.h"
 
-#include <osgVolumizer/render/TableTextures.h>
+#include <osgVolumizer/render/textures/TableTextures.h>
 
 #include <support/GLTest.h>
 

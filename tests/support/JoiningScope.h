@@ -1,6 +1,6 @@
 #pragma once
 
-#include <osgVolumizer/render/BrickJoining.h>
+#include <osgVolumizer/render/cull/BrickJoining.h>
 
 namespace osgVolumizer {
 namespace support {

@@ -1,0 +1,115 @@
+#include "Allocation.h"
+
+#include "GLErrors.h"
+#include "ProgramInterface.h"
+
+#include <osg/BufferObject>
+#include <osg/Image>
+
+#include <glm/common.hpp>
+
+#include <mutex>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+std::mutex& mockMutex()
+{
+    static std::mutex mutex;
+    return mutex;
+}
+
+std::function<bool(const AllocationRequest&)>& mock()
+{
+    static std::function<bool(const AllocationRequest&)> isRefused;
+    return isRefused;
+}
+
+bool isMockedAway(const AllocationRequest& request)
+{
+    std::lock_guard<std::mutex> lock(mockMutex());
+    return mock() && mock()(request);
+}
+
+AllocationRequest requestOf(AllocationRequest::Kind kind, const osg::Texture& texture)
+{
+    AllocationRequest request;
+    request.kind = kind;
+    request.internalFormat = static_cast<GLenum>(texture.getInternalFormat());
+    request.size = {texture.getTextureWidth(), texture.getTextureHeight(),
+                    texture.getTextureDepth()};
+    if (const osg::Image* image = texture.getImage(0))
+        request.size = {image->s(), image->t(), image->r()};
+    request.size = glm::max(request.size, glm::ivec3(1));
+    return request;
+}
+
+// Nothing that OSG would take for a texture stays.
+void forget(osg::State& state, osg::Texture& texture)
+{
+    const unsigned context = state.getContextID();
+    if (auto* object = texture.getTextureObject(context)) {
+        object->_allocated = false; // or the next texture of this size gets it as a whole one
+        texture.releaseGLObjects(&state);
+    }
+    if (osg::Image* image = texture.getImage(0))
+        if (osg::BufferObject* buffer = image->getBufferObject()) buffer->releaseGLObjects(&state);
+}
+
+} // namespace
+
+bool allocate(const AllocationRequest& request, const std::function<void()>& make)
+{
+    if (isMockedAway(request)) return false;
+    discardErrors();
+    make();
+    const bool made = glGetError() == GL_NO_ERROR;
+    discardErrors();
+    return made;
+}
+
+bool allocateTarget(osg::State& state, osg::Texture& texture, const glm::ivec3& size)
+{
+    AllocationRequest request;
+    request.size = size;
+    request.internalFormat = static_cast<GLenum>(texture.getInternalFormat());
+    const bool made = allocate(request, [&]() {
+        // Every brick applies its texture to this unit before it is drawn.
+        state.setActiveTextureUnit(UNIT_VOXELS);
+        texture.apply(state);
+        state.haveAppliedTextureAttribute(UNIT_VOXELS, osg::StateAttribute::TEXTURE);
+    });
+    if (!made) forget(state, texture);
+    return made;
+}
+
+bool applyAllocated(osg::State& state, AllocationRequest::Kind kind, osg::Texture& texture,
+                    unsigned unit)
+{
+    if (texture.getTextureObject(state.getContextID())) {
+        state.applyTextureAttribute(unit, &texture);
+        return true;
+    }
+    const bool made = allocate(requestOf(kind, texture), [&]() {
+        state.setActiveTextureUnit(unit);
+        texture.apply(state);
+    });
+    if (made) {
+        state.haveAppliedTextureAttribute(unit, &texture);
+        return true;
+    }
+    forget(state, texture);
+    state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+    return false;
+}
+
+void mockAllocation(std::function<bool(const AllocationRequest&)> isRefused)
+{
+    std::lock_guard<std::mutex> lock(mockMutex());
+    mock() = std::move(isRefused);
+}
+
+} // namespace render
+} // namespace osgVolumizer

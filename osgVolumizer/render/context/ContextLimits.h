@@ -1,0 +1,38 @@
+#pragma once
+
+#include "../../core/Status.h"
+
+#include <osg/State>
+
+#include <functional>
+
+namespace osgVolumizer {
+namespace render {
+
+/// What a context can do, as far as it changes what is drawn.
+struct ContextLimits
+{
+    double version = 0.0;      ///< of OpenGL
+    bool floatTargets = false; ///< drawing into 16- and 32-bit float textures
+    int texture3DSize = 0;     ///< largest side of a 3D texture, texels; 0: there are none
+    /// Float textures are filtered both faster and more exactly than others (llvmpipe, whose 8-bit
+    /// path also rounds the result to 8 bits: an error of half a 255th of the type's range).
+    bool filtersFloatsBest = false;
+
+    /// Whether volumes can be drawn at all; else what is missing.
+    Status check() const;
+};
+
+/// Asks the current context.
+ContextLimits queryContextLimits(osg::State& state);
+
+/// Largest side of a 3D texture of a context, by what OSG knows of it, so in any thread; 0 where it
+/// does not yet.
+int texture3DSizeOf(unsigned contextId);
+
+/// For tests: what every context asked from now on is made to say instead; an empty function ends
+/// it. Contexts that have been asked before stay as they are.
+void mockContextLimits(std::function<void(ContextLimits&)> change);
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,131 @@
+#include "BrickSelection.h"
+
+#include "../textures/BrickResidency.h"
+#include "BrickJoining.h"
+
+#include <osgUtil/CullVisitor>
+
+#include <atomic>
+#include <cmath>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+std::atomic<bool> skips{true};
+
+osg::BoundingBox objectBounds(const core::Box3d& box, const glm::dmat4& frameToObject)
+{
+    osg::BoundingBox result;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec4 p = frameToObject * glm::dvec4(box.corner(i), 1.0);
+        result.expandBy(osg::Vec3d(p.x, p.y, p.z));
+    }
+    return result;
+}
+
+OccupancyQuery queryOf(const VolumeInstance& volume, const Voxels& voxels)
+{
+    const osg::Vec2d range = voxels.getRange();
+    OccupancyQuery query;
+    query.table = &volume.look->table;
+    query.cubic = volume.look->features.cubic;
+    query.isosurface = volume.look->features.rayFunction == VolumeAppearance::ISOSURFACE;
+    query.isoFraction = (volume.appearance->getIsoValue() - range.x()) / (range.y() - range.x());
+    return query;
+}
+
+// Cuts a brick down to where it shows something; false where that is nowhere.
+bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickResidency& textures,
+                   const OccupancyQuery& query, SelectedBrick& brick, LeftOutBricks& leftOut)
+{
+    if (voxels.getComponents() == 1) {
+        const auto values = voxels.getBrickRange(brick.index);
+        if (!(values.first <= values.second) ||
+            !showsValues(voxels, query, values.first, values.second)) {
+            ++volume.emptyBricks;
+            leftOut.empty.push_back(brick.index);
+            return false;
+        }
+    }
+    if (!volume.prepared->voxelFrame || !skips) return true;
+    brick.cells = textures.cells().get(voxels, brick.index, query);
+    if (!brick.cells) {
+        leftOut.unreadable = true;
+        return false;
+    }
+    volume.cellSize = brick.cells->cellSize;
+    volume.cellCount += brick.cells->cellCount;
+    volume.occupiedCells += brick.cells->occupiedCount;
+    // A layer that reaches into the box from a slice outside would be lost.
+    const ProgramFeatures& features = volume.look->features;
+    if (features.slab || !features.preIntegrated)
+        brick.box = intersection(brick.box, brick.cells->box);
+    if (brick.box.empty()) {
+        ++volume.emptyBricks;
+        leftOut.cutAway.push_back(brick.index);
+        return false;
+    }
+    volume.homogeneousBricks += brick.cells->homogeneous;
+    return true;
+}
+
+} // namespace
+
+void setSkipping(bool on)
+{
+    skips = on;
+}
+
+bool isWorthSkipping(const VolumeInstance& volume)
+{
+    // What it costs to look for the ends of a ray's occupied part, in samples.
+    constexpr double COST = 15.0;
+    if (!volume.look->features.slab || volume.cellCount == 0) return false;
+    const double emptyShare = 1.0 - double(volume.occupiedCells) / double(volume.cellCount);
+    const double boxEdge =
+        volume.cellSize * std::cbrt(double(volume.cellCount) / double(volume.bricks.size()));
+    return emptyShare * boxEdge > COST * volume.look->voxelsPerSample;
+}
+
+void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
+{
+    const core::BrickLayout& layout = voxels.getLayout();
+    const osg::ref_ptr<BrickResidency> textures = BrickResidency::of(voxels);
+    const PreparedGeometry& prepared = *volume.prepared;
+    const ProgramFeatures& features = volume.look->features;
+    const OccupancyQuery query = queryOf(volume, voxels);
+    const osg::FrameStamp* stamp = visitor.getFrameStamp();
+    const unsigned frame = stamp ? stamp->getFrameNumber() : 0;
+    LeftOutBricks leftOut;
+    for (std::int64_t i = 0; i < layout.brickCount(); ++i) {
+        const core::BrickPlace place = layout.brick(i);
+        const glm::vec3 size(place.samples.size());
+        SelectedBrick brick;
+        brick.index = i;
+        brick.box = brick.clipBox = place.clipBox;
+        brick.textureScale = 1.0f / size;
+        brick.textureOffset = (0.5f - glm::vec3(place.samples.min)) / size;
+        if (prepared.voxelFrame) {
+            brick.box = intersection(brick.box, prepared.regionBox);
+            if (brick.box.empty()) continue;
+            if (visitor.isCulled(objectBounds(brick.box, prepared.frameToObject))) continue;
+        }
+        // Gathered rays count every value, shown or not.
+        if (!features.gathers() && !cutToOccupied(volume, voxels, *textures, query, brick, leftOut))
+            continue;
+        brick.texels.texture = textures->get(voxels, i, features.gradientTexture, frame);
+        brick.texels.voxels = &voxels;
+        brick.texels.index = i;
+        brick.texels.gradients = features.gradientTexture;
+        if (brick.texels.texture)
+            volume.bricks.push_back(std::move(brick));
+        else
+            leftOut.unreadable = true;
+    }
+    joinBricks(volume, voxels, query, leftOut, visitor);
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "../volume/VolumeInstance.h"
+
+namespace osgUtil {
+class CullVisitor;
+}
+
+namespace osgVolumizer {
+namespace render {
+
+/// Appends the bricks that can show something: inside geometry and view, and not transparent
+/// throughout under the table; each cut down to the samples that are not. Reads no brick whose
+/// range tells that it shows nothing. Expects the volume's look.
+void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor);
+
+/// Whether parts of bricks that show nothing are left out; for tests and for tuning. On by default.
+void setSkipping(bool on);
+
+/// Whether so many cells of the selected bricks are empty that leaping over them pays.
+bool isWorthSkipping(const VolumeInstance& volume);
+
+} // namespace render
+} // namespace osgVolumizer

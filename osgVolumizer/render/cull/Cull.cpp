@@ -1,0 +1,175 @@
+#include "Cull.h"
+
+#include "../context/Matrices.h"
+#include "../context/Statistics.h"
+#include "../draw/VolumeProgram.h"
+#include "../merge/Merger.h"
+#include "../volume/GeometryCache.h"
+#include "../volume/MakeLook.h"
+#include "../volume/SliceCache.h"
+#include "../volume/VolumeInstance.h"
+#include "BrickSelection.h"
+#include "FrameTimes.h"
+#include "SamplingChoice.h"
+
+#include <osg/Timer>
+#include <osgUtil/CullVisitor>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+// Surfaces, and steps of a ray, whatever is asked for: nobody would wait for more, and floats still
+// tell the ends of steps apart.
+constexpr int MOST_SAMPLES = 1 << 16;
+
+const VolumeAppearance* nearestAppearance(const osg::NodePath& path)
+{
+    for (auto node = path.rbegin(); node != path.rend(); ++node)
+        if (const auto* appearance = dynamic_cast<const VolumeAppearance*>(*node))
+            return appearance;
+    return nullptr;
+}
+
+// What osgUtil::CullVisitor does for every drawable before it looks at it: false if the user's
+// callback or the frustum rejects it.
+bool passesOsgCulling(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
+{
+    if (osg::Callback* callback = geometry.getCullCallback()) {
+        osg::RenderInfo& info = visitor.getRenderInfo();
+        if (osg::DrawableCullCallback* d = callback->asDrawableCullCallback()) {
+            if (d->cull(&visitor, &geometry, &info)) return false;
+        } else {
+            callback->run(&geometry, &visitor);
+        }
+    }
+    return !(geometry.isCullingActive() && visitor.isCulled(geometry.getBoundingBox()));
+}
+
+void report(const VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
+{
+    const std::pair<const char*, std::int64_t> values[] = {
+        {"osgVolumizer bricks total", voxels.getLayout().brickCount()},
+        {"osgVolumizer bricks empty", volume.emptyBricks},
+        {"osgVolumizer bricks homogeneous", volume.homogeneousBricks},
+        {"osgVolumizer cells total", volume.cellCount},
+        {"osgVolumizer cells occupied", volume.occupiedCells}};
+    for (const auto& value : values)
+        count(visitor.getCurrentCamera(), visitor.getFrameStamp(), value.first,
+              static_cast<double>(value.second));
+}
+
+void registerVolume(std::unique_ptr<VolumeInstance> volume, osgUtil::CullVisitor& visitor)
+{
+    const glm::dvec4 center(volume->look->center, 1.0);
+    const float depth = static_cast<float>(volume->look->referenceDepth);
+    if (std::isnan(depth)) return;
+    osgUtil::CullVisitor& cv = visitor;
+    if (volume->look->features.voxels)
+        count(cv.getCurrentCamera(), cv.getFrameStamp(), "osgVolumizer voxels per sample",
+              volume->look->voxelsPerSample);
+    const osg::ref_ptr<osg::StateSet> stateSet = volumeStateSet(volume->look->features);
+    cv.pushStateSet(stateSet);
+    volume->drawable = new VolumeDrawable;
+    cv.addDrawableAndDepth(volume->drawable, volume->frameToEye.get(), depth);
+    Merger::of(*cv.getCurrentRenderBin(), cv)->add(std::move(volume));
+    cv.popStateSet();
+}
+
+TableTexture tableOf(const VolumeAppearance& appearance, VolumeAppearance::Lookup lookup)
+{
+    return appearance.tableTextures().get(*appearance.getLookupTable(),
+                                          appearance.getVoxels()->getRange(), lookup);
+}
+
+// The table, and, where an error tolerance or a frame time is asked for, the period.
+TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visitor)
+{
+    const VolumeAppearance& appearance = *volume.appearance;
+    const VolumeAppearance::Lookup lookup = usedLookup(appearance, *volume.prepared);
+    TableTexture table;
+    if (!(appearance.getErrorTolerance() > 0.0) ||
+        !canKeepTolerance(appearance, *volume.prepared)) {
+        table = tableOf(appearance, lookup);
+    } else {
+        SamplingQuestion question;
+        question.tolerance = appearance.getErrorTolerance();
+        if (lookup != VolumeAppearance::PREINTEGRATED)
+            question.midpoints = tableOf(appearance, VolumeAppearance::AFTER_INTERPOLATION);
+        if (lookup != VolumeAppearance::AFTER_INTERPOLATION)
+            question.integrals = tableOf(appearance, VolumeAppearance::PREINTEGRATED);
+        question.frameToUnits =
+            glm::dmat3(volume.prepared->frameToObject) / appearance.getEffectiveOpacityUnit();
+        question.box = volume.prepared->regionBox;
+        question.nearest = appearance.getInterpolation() == VolumeAppearance::NEAREST;
+        const SamplingChoice choice =
+            appearance.samplingChoices().get(*appearance.getVoxels(), question);
+        volume.sampling.periodVoxel = glm::dvec3(choice.periodVoxel);
+        table = choice.integrals ? question.integrals : question.midpoints;
+    }
+    if (appearance.getTargetFrameTime() > 0.0 && visitor.getFrameStamp()) {
+        const double now = osg::Timer::instance()->time_s();
+        const osg::Matrixd toClip = *volume.frameToEye * *visitor.getProjectionMatrix();
+        volume.sampling.periodVoxel *= appearance.frameTimes().stretch(
+            volume.viewId, visitor.getFrameStamp()->getFrameNumber(), toClip, now,
+            appearance.getTargetFrameTime());
+    }
+    return table;
+}
+
+} // namespace
+
+void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
+{
+    if (!passesOsgCulling(geometry, visitor)) return;
+    if (visitor.clampedPixelSize(geometry.getBound()) < 1.0f) {
+        count(visitor.getCurrentCamera(), visitor.getFrameStamp(), "osgVolumizer volumes too small",
+              1.0);
+        return;
+    }
+    const VolumeAppearance* appearance = nearestAppearance(visitor.getNodePath());
+    if (!appearance) return;
+    const Voxels* voxels = appearance->getVoxels();
+    if (voxels && !voxels->valid()) return;
+    auto volume = std::make_unique<VolumeInstance>();
+    volume->geometry = &geometry;
+    volume->appearance = appearance;
+    volume->prepared = geometry.geometryCache().get(geometry, voxels);
+    if (!volume->prepared) return;
+    if (!voxels && volume->prepared->tetras.vertices.format().colorSize == 0) return;
+    volume->sampling = appearance->getSamplingParameters();
+    volume->sampling.maximumSamples = std::min(volume->sampling.maximumSamples, MOST_SAMPLES);
+    volume->viewId = viewIdOf(visitor);
+    if (voxels && !volume->prepared->voxelFrame) {
+        const osg::Vec3d s = voxels->getSpacing();
+        volume->sampling.voxelSize = {s.x(), s.y(), s.z()};
+    }
+    osg::RefMatrix& objectToEye = *visitor.getModelViewMatrix();
+    volume->frameToEye =
+        new osg::RefMatrix(toOsg(toGlm(objectToEye) * volume->prepared->frameToObject));
+    TableTexture table;
+    if (voxels) table = chooseSampling(*volume, visitor);
+    const std::shared_ptr<VolumeLook> look = makeLook(*volume, table, visitor);
+    volume->look = look;
+    if (voxels) {
+        selectBricks(*volume, *voxels, visitor);
+        look->features.skipping = isWorthSkipping(*volume);
+        report(*volume, *voxels, visitor);
+        if (volume->bricks.empty()) return;
+    }
+    if (visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR &&
+        !visitor.updateCalculatedNearFar(objectToEye, geometry.getBoundingBox()))
+        return;
+
+    if (osg::StateSet* own = geometry.getStateSet()) visitor.pushStateSet(own);
+    look->above = stateAbove(visitor.getCurrentStateGraph());
+    registerVolume(std::move(volume), visitor);
+    if (geometry.getStateSet()) visitor.popStateSet();
+}
+
+} // namespace render
+} // namespace osgVolumizer

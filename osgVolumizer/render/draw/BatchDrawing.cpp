@@ -1,0 +1,118 @@
+#include "BatchDrawing.h"
+
+#include "../context/Allocation.h"
+#include "../context/ProgramInterface.h"
+#include "../context/ReportOnce.h"
+#include "../context/Uniforms.h"
+#include "../textures/BrickCells.h"
+#include "../textures/BrickResidency.h"
+#include "../textures/SelectedBrick.h"
+
+#include "../../core/ordering/BrickOrder.h"
+#include "../../core/sampling/ViewHelpers.h"
+
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
+
+#include <map>
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+// False where there is nothing to draw from.
+bool setVoxels(const BatchDrawing& drawing, const BrickBatch& batch)
+{
+    CoarseTexture voxels;
+    if (batch.joined) {
+        const JoinedBricks& joined = *batch.joined;
+        const auto load = [&joined](std::int64_t brick) {
+            return BrickResidency::texels(*joined.voxels, brick, joined.gradients);
+        };
+        if (!joined.texture->apply(drawing.renderInfo, drawing.limits, joined.pieces, load,
+                                   UNIT_VOXELS))
+            return false;
+    } else if (batch.brick.texture) {
+        voxels = batch.brick.apply(drawing.renderInfo, drawing.limits, UNIT_VOXELS);
+        if (!voxels.texture) return false;
+    } else {
+        return true;
+    }
+    drawing.uniforms.set("textureScale", batch.textureScale * voxels.scale);
+    drawing.uniforms.set("textureOffset", batch.textureOffset * voxels.scale + voxels.offset);
+    return true;
+}
+
+void setCells(const BatchDrawing& drawing, const BrickCells* cells)
+{
+    osg::State& state = *drawing.renderInfo.getState();
+    bool known = cells && cells->texture;
+    if (known && !applyAllocated(state, AllocationRequest::CELLS, *cells->texture, UNIT_CELLS)) {
+        known = false;
+        reportOnce({ErrorCode::TOO_LARGE, "what is empty in a brick is refused by the graphics "
+                                          "card; nothing of the brick is leapt over"});
+    }
+    if (!known) state.applyTextureAttribute(UNIT_CELLS, occupiedEverywhere());
+    drawing.uniforms.set("cellOrigin", known ? cells->origin : glm::vec3(0.0f));
+    drawing.uniforms.set("cellSize", known ? cells->cellSize : 1e6f);
+}
+
+// The batch of a brick that was to be drawn as part of joined ones: the same triangles, cut by the
+// shader.
+BrickBatch apartBatch(const BrickBatch& joined, const SelectedBrick& brick)
+{
+    BrickBatch batch = joined;
+    batch.joined = nullptr;
+    batch.brick = brick.texels;
+    batch.cells = brick.cells;
+    batch.clipMin = glm::max(joined.clipMin, glm::vec3(brick.box.min));
+    batch.clipMax = glm::min(joined.clipMax, glm::vec3(brick.box.max));
+    batch.brickMin = glm::vec3(brick.clipBox.min);
+    batch.brickMax = glm::vec3(brick.clipBox.max);
+    batch.textureScale = brick.textureScale;
+    batch.textureOffset = brick.textureOffset;
+    return batch;
+}
+
+void drawApart(const BatchDrawing& drawing, const BrickBatch& batch)
+{
+    const JoinedBricks& joined = *batch.joined;
+    const Result<glm::dvec4> eye = core::eyePosition(drawing.view);
+    if (!eye) return;
+    std::vector<std::int64_t> order;
+    std::map<std::int64_t, const SelectedBrick*> byIndex;
+    for (const SelectedBrick& brick : joined.apart) {
+        order.push_back(brick.index);
+        byIndex[brick.index] = &brick;
+    }
+    core::BrickOrder(joined.voxels->getLayout()).sort(*eye, order);
+    for (const std::int64_t index : order)
+        drawBatch(drawing, apartBatch(batch, *byIndex.at(index)));
+}
+
+} // namespace
+
+void drawBatch(const BatchDrawing& drawing, const BrickBatch& batch)
+{
+    if (glm::any(glm::greaterThan(batch.clipMin, batch.clipMax))) return;
+    const Uniforms& uniforms = drawing.uniforms;
+    if (!setVoxels(drawing, batch)) {
+        if (batch.joined) drawApart(drawing, batch);
+        return;
+    }
+    if (drawing.features.skipping) setCells(drawing, batch.cells.get());
+    if (drawing.features.preIntegrated) {
+        uniforms.set("brickMin", batch.brickMin);
+        uniforms.set("brickMax", batch.brickMax);
+    }
+    uniforms.set("homogeneous", batch.cells && batch.cells->homogeneous ? 1 : 0);
+    uniforms.set("clipMin", batch.clipMin);
+    uniforms.set("clipMax", batch.clipMax);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.indexCount), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(std::size_t(batch.firstIndex) * sizeof(unsigned)));
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "../context/ContextLimits.h"
+#include "VolumeDrawable.h"
+#include "VolumeProgram.h"
+
+#include "../../core/sampling/View.h"
+
+#include <osg/RenderInfo>
+
+namespace osgVolumizer {
+namespace render {
+
+class Uniforms;
+
+/// What all batches of a drawable are drawn with.
+struct BatchDrawing
+{
+    osg::RenderInfo& renderInfo;
+    const ContextLimits& limits;
+    const Uniforms& uniforms;
+    const ProgramFeatures& features;
+    const core::View& view;
+};
+
+/// Draws the triangles of a batch from a mesh that is bound. What the card refuses is drawn the
+/// next best way: bricks that cannot share a texture one by one, far to near.
+void drawBatch(const BatchDrawing& drawing, const BrickBatch& batch);
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "VolumeLook.h"
+#include "VolumeMesh.h"
+
+#include <osg/Drawable>
+
+#include <memory>
+
+namespace osgVolumizer {
+namespace render {
+
+/// One leaf: a volume between two depths, drawn brick by brick, far to near. Made fresh for each
+/// view and frame, and never changed afterwards.
+class VolumeDrawable : public osg::Drawable
+{
+public:
+    VolumeDrawable();
+    osg::Object* cloneType() const override { return new VolumeDrawable; }
+    osg::Object* clone(const osg::CopyOp&) const override { return new VolumeDrawable; }
+    const char* libraryName() const override { return "osgVolumizer"; }
+    const char* className() const override { return "VolumeDrawable"; }
+
+    void set(std::shared_ptr<const VolumeMesh> mesh, std::shared_ptr<const VolumeLook> look)
+    {
+        _mesh = std::move(mesh);
+        _look = std::move(look);
+    }
+    const VolumeMesh* mesh() const { return _mesh.get(); }
+    void drawImplementation(osg::RenderInfo& renderInfo) const override;
+
+private:
+    std::shared_ptr<const VolumeMesh> _mesh;
+    std::shared_ptr<const VolumeLook> _look;
+};
+
+} // namespace render
+} // namespace osgVolumizer

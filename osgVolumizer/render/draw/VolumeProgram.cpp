@@ -1,0 +1,171 @@
+#include "VolumeProgram.h"
+
+#include "../context/ProgramInterface.h"
+#include "../context/ShaderSource.h"
+#include "../context/SharedStateSets.h"
+#include "../context/Uniforms.h"
+#include "Paint.h"
+
+#include <osg/AlphaFunc>
+#include <osg/BlendEquation>
+#include <osg/BlendFunc>
+#include <osg/CullFace>
+#include <osg/Depth>
+#include <osg/PolygonMode>
+#include <osg/Program>
+
+#include <atomic>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+std::string header(const ProgramFeatures& features)
+{
+    std::string text = "#version 330\n";
+    const auto define = [&text](bool on, const char* name) {
+        if (on) text += std::string("#define ") + name + "\n";
+    };
+    define(features.voxelCoordinates, "VOXEL_COORDINATES");
+    define(features.vertexColors, "VERTEX_COLORS");
+    define(features.voxels, "VOXELS");
+    define(features.rgba, "RGBA");
+    define(features.opaqueDepth, "OPAQUE_DEPTH");
+    define(features.layerDepth, "LAYER_DEPTH");
+    define(features.ranked, "RANKED");
+    define(features.spherical, "SPHERICAL");
+    define(features.exact, "EXACT");
+    define(features.nearest, "NEAREST");
+    define(features.cubic, "CUBIC");
+    define(features.before, "BEFORE");
+    define(features.preIntegrated, "PREINTEGRATED");
+    static const char* const functions[] = {"COMPOSITE", "MAXIMUM", "MINIMUM",
+                                            "AVERAGE",   "SUM",     "ISOSURFACE"};
+    define(true, functions[features.rayFunction]);
+    define(features.paintCount > 0, "PAINTED");
+    if (features.slotCount > 0)
+        text += "#define SLOTS " + std::to_string(features.slotCount) + "\n";
+    define(features.shading, "SHADING");
+    define(features.gradientTexture, "GRADIENT_TEXTURE");
+    define(features.shortRuns, "SHORT_RUNS");
+    define(features.skipping, "SKIPPING");
+    define(features.countSamples, "COUNT_SAMPLES");
+    define(features.smoothTable, "SMOOTH_TABLE");
+    define(features.exact || features.nearest || features.cubic || features.before, "FETCH");
+    text += "#define PLANES " + std::to_string(features.planeCount) + "\n";
+    return text;
+}
+
+osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
+{
+    const std::string kind = features.slab ? "slab" : "slice";
+    osg::ref_ptr<osg::Program> result = new osg::Program;
+    result->setName("osgVolumizer " + kind);
+    result->addShader(
+        makeShader(osg::Shader::VERTEX, header(features), shaderSource(kind + ".vert.glsl")));
+    std::string fragment;
+    for (const char* file : {"voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl",
+                             "skipping.glsl", "segment.glsl"})
+        fragment += shaderSource(file);
+    if (features.paintCount > 0) fragment += paintSource(features.paintCount);
+    fragment += shaderSource(kind + ".frag.glsl");
+    result->addShader(makeShader(osg::Shader::FRAGMENT, header(features), fragment));
+    return result;
+}
+
+std::atomic<bool> countsSamples{false};
+
+// What holds against states above that override.
+constexpr unsigned KEPT = osg::StateAttribute::ON | osg::StateAttribute::PROTECTED;
+constexpr unsigned KEPT_OFF = osg::StateAttribute::OFF | osg::StateAttribute::PROTECTED;
+
+// Faces only say which pixels there is something to integrate in: how geometry is rasterised or
+// cut, and what logic does with it, is not for them.
+void keepFacesWhole(osg::StateSet& set)
+{
+    constexpr GLenum PRIMITIVE_RESTART = 0x8F9D; // GL_PRIMITIVE_RESTART
+    set.setAttribute(new osg::PolygonMode, KEPT);
+    for (GLenum mode :
+         {GLenum(GL_CULL_FACE), GLenum(GL_POLYGON_OFFSET_FILL), GLenum(GL_POLYGON_OFFSET_LINE),
+          GLenum(GL_POLYGON_OFFSET_POINT), GLenum(GL_COLOR_LOGIC_OP), PRIMITIVE_RESTART})
+        set.setMode(mode, KEPT_OFF);
+    for (GLenum plane = 0; plane < 8; ++plane)
+        set.setMode(GL_CLIP_PLANE0 + plane, KEPT_OFF);
+}
+
+osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
+{
+    using osg::StateAttribute;
+    osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+    set->setName("osgVolumizer");
+    set->setDataVariance(osg::Object::STATIC);
+    set->setAttributeAndModes(program(features), KEPT);
+    // What surfaces leave in the target's alpha need not be what they take of the light behind.
+    constexpr GLenum SOURCE1_COLOR = 0x88F9;
+    const bool captured = features.slotCount > 0;
+    set->setAttributeAndModes(
+        new osg::BlendFunc(osg::BlendFunc::ONE,
+                           captured ? SOURCE1_COLOR : GLenum(GL_ONE_MINUS_SRC_ALPHA)),
+        KEPT);
+    set->setAttribute(new osg::BlendEquation(osg::BlendEquation::FUNC_ADD), KEPT);
+    set->setAttributeAndModes(
+        new osg::Depth(captured ? osg::Depth::ALWAYS : osg::Depth::LEQUAL, 0.0, 1.0, false), KEPT);
+    // OSG's transparent bins drop fragments of alpha 0, which may still carry colour.
+    set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f), KEPT_OFF);
+    // Segments end at near and far themselves: rounding must not cut off the face on the near
+    // plane.
+    if (features.slab) set->setMode(GL_DEPTH_CLAMP, KEPT);
+    keepFacesWhole(*set);
+    set->addUniform(new osg::Uniform(uniformName("voxels").c_str(), int(UNIT_VOXELS)));
+    set->addUniform(new osg::Uniform(uniformName("lookupTable").c_str(), int(UNIT_TABLE)));
+    set->addUniform(new osg::Uniform(uniformName("opaqueDepth").c_str(), int(UNIT_OPAQUE_DEPTH)));
+    set->addUniform(new osg::Uniform(uniformName("layerDepth").c_str(), int(UNIT_LAYER_DEPTH)));
+    set->addUniform(new osg::Uniform(uniformName("sortedSlots").c_str(), int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform(uniformName("slotColors").c_str(), int(UNIT_SORTED_NEAR)));
+    set->addUniform(new osg::Uniform(uniformName("sortedFar").c_str(), int(UNIT_SORTED_FAR)));
+    set->addUniform(new osg::Uniform(uniformName("sortedNear").c_str(), int(UNIT_SORTED_NEAR)));
+    set->addUniform(new osg::Uniform(uniformName("cells").c_str(), int(UNIT_CELLS)));
+    set->setRenderBinDetails(10, "DepthSortedBin");
+    return set;
+}
+
+} // namespace
+
+void setSampleCounting(bool on)
+{
+    countsSamples = on;
+}
+
+bool sampleCounting()
+{
+    return countsSamples;
+}
+
+osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
+{
+    return sharedStateSet(features.key(), [&features]() { return makeStateSet(features); });
+}
+
+osg::ref_ptr<osg::StateSet> depthTestStateSet(const DepthTest& test)
+{
+    using osg::StateAttribute;
+    osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+    set->setAttributeAndModes(new osg::Depth(test.function, test.zNear, test.zFar, false),
+                              StateAttribute::ON | StateAttribute::PROTECTED);
+    return set;
+}
+
+osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features)
+{
+    osg::ref_ptr<osg::Program> result = new osg::Program;
+    result->setName("osgVolumizer resolve");
+    result->addShader(
+        makeShader(osg::Shader::VERTEX, header(features), shaderSource("screen.vert.glsl")));
+    result->addShader(
+        makeShader(osg::Shader::FRAGMENT, header(features), shaderSource("resolve.frag.glsl")));
+    return result;
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,94 @@
+#include "ApplyPaint.h"
+
+#include "../context/Matrices.h"
+#include "../context/ReportOnce.h"
+#include "MergeGroups.h"
+
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <string>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+bool paints(const VolumeInstance* volume)
+{
+    return volume->appearance->getCombineRule() == VolumeAppearance::PAINT;
+}
+
+void refuse(const VolumeInstance& volume, const std::string& why)
+{
+    reportOnce({ErrorCode::NOT_SUPPORTED,
+                "VolumeAppearance \"" + volume.appearance->getName() + "\": " + why});
+}
+
+// The paints of a volume, still for itself as the painted one.
+std::vector<Paint> paintsOf(const VolumeInstance& volume)
+{
+    const PreparedGeometry& prepared = *volume.prepared;
+    if (!volume.look->features.voxels || !prepared.voxelFrame || !prepared.region ||
+        prepared.obliquePlanes.size() > std::size_t(Paint::MAXIMUM_PLANES)) {
+        refuse(volume, "painting needs voxels in a convex region of no more than " +
+                           std::to_string(Paint::MAXIMUM_PLANES) +
+                           " oblique faces, in one voxel frame; the volume is not shown");
+        return {};
+    }
+    std::vector<Paint> result;
+    for (const SelectedBrick& brick : volume.bricks) {
+        Paint paint;
+        paint.voxels = brick.texels;
+        paint.table = volume.look->table;
+        paint.textureScale = brick.textureScale;
+        paint.textureOffset = brick.textureOffset;
+        paint.boxMin = glm::vec3(brick.box.min);
+        paint.boxMax = glm::vec3(brick.box.max);
+        for (const core::Plane& plane : prepared.obliquePlanes)
+            paint.planes.emplace_back(glm::dvec4(plane.normal, plane.offset));
+        paint.planes.resize(Paint::MAXIMUM_PLANES, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+        paint.valueToEntry = volume.look->valueToEntry;
+        paint.rgba = volume.look->features.rgba;
+        paint.nearest = volume.look->features.nearest;
+        result.push_back(paint);
+    }
+    return result;
+}
+
+} // namespace
+
+void applyPaint(std::vector<VolumeInstance*>& volumes)
+{
+    const auto firstPaint =
+        std::stable_partition(volumes.begin(), volumes.end(),
+                              [](const VolumeInstance* volume) { return !paints(volume); });
+    if (firstPaint == volumes.end()) return;
+    for (auto painted = volumes.begin(); painted != firstPaint; ++painted) {
+        VolumeInstance& volume = **painted;
+        if (volume.look->features.gathers()) continue;
+        const BoxInView view = viewOf(volume);
+        auto look = std::make_shared<VolumeLook>(*volume.look);
+        for (auto p = firstPaint; p != volumes.end(); ++p) {
+            if (!overlaps(viewOf(**p), view)) continue;
+            const glm::dmat4 fromFrame =
+                glm::inverse(toGlm(*(*p)->frameToEye)) * toGlm(*volume.frameToEye);
+            for (Paint& paint : paintsOf(**p)) {
+                paint.fromFrame = fromFrame;
+                look->paints.push_back(std::move(paint));
+            }
+        }
+        if (look->paints.size() > std::size_t(Paint::MAXIMUM_COUNT)) {
+            refuse(volume, "it overlaps " + std::to_string(look->paints.size()) +
+                               " bricks of volumes that paint it; it shows only " +
+                               std::to_string(Paint::MAXIMUM_COUNT));
+            look->paints.resize(Paint::MAXIMUM_COUNT);
+        }
+        look->features.paintCount = static_cast<int>(look->paints.size());
+        volume.look = std::move(look);
+    }
+    volumes.erase(firstPaint, volumes.end());
+}
+
+} // namespace render
+} // namespace osgVolumizer

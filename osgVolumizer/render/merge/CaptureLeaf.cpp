@@ -1,0 +1,228 @@
+#include "CaptureLeaf.h"
+
+#include "../context/ContextRefusals.h"
+#include "../context/ForeignState.h"
+#include "../context/ProgramInterface.h"
+#include "../context/ReportOnce.h"
+#include "../context/ScreenPass.h"
+#include "../context/SharedStateSets.h"
+#include "../context/Uniforms.h"
+#include "../draw/VolumeProgram.h"
+
+#include <osg/Depth>
+#include <osg/Stencil>
+
+#include <algorithm>
+#include <string>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+constexpr std::size_t MEMORY_BUDGET = std::size_t(512) << 20, BYTES_PER_SLOT = 20 + 5;
+
+// Comparators of a sorting network for n elements (Batcher; Knuth, TAOCP 3, algorithm 5.2.2 M).
+std::string sortingNetwork(int n)
+{
+    std::string code;
+    int top = 1;
+    while (2 * top < n)
+        top *= 2;
+    for (int p = top; p > 0; p /= 2) {
+        int q = top, r = 0;
+        for (int d = p; d > 0; d = q - p, q /= 2, r = p)
+            for (int i = 0; i + d < n; ++i)
+                if ((i & p) == r)
+                    code += "    order(d[" + std::to_string(i) + "], d[" + std::to_string(i + d) +
+                            "], id[" + std::to_string(i) + "], id[" + std::to_string(i + d) +
+                            "]);\n";
+    }
+    return code;
+}
+
+// Straight-line code, so that a pixel's fragments stay in registers.
+std::string sortCode(int slots)
+{
+    std::string code =
+        "#define SLOTS " + std::to_string(slots) + "\nlayout(location = 0) out vec4 sorted[" +
+        std::to_string(sortedLayers(slots)) +
+        "];\n"
+        "void order(inout float d0, inout float d1, inout float id0, inout float id1)\n{\n"
+        "    // Of equal depths the later is nearer.\n"
+        "    bool swap = d0 > d1 || (d0 == d1 && id0 < id1);\n"
+        "    float d = d0, id = id0;\n"
+        "    d0 = swap ? d1 : d0;\n    d1 = swap ? d : d1;\n"
+        "    id0 = swap ? id1 : id0;\n    id1 = swap ? id : id1;\n}\n"
+        "void sortAndStore(float d[SLOTS], float id[SLOTS])\n{\n" +
+        sortingNetwork(slots);
+    const auto element = [](const char* name, int i) {
+        return std::string(name) + "[" + std::to_string(i) + "]";
+    };
+    for (int i = 0; i < slots; i += 4)
+        code += "    sorted[" + std::to_string(i / 4) + "] = vec4(" + element("d", i) + ", " +
+                element("d", i + 1) + ", " + element("d", i + 2) + ", " + element("d", i + 3) +
+                ");\n";
+    for (int i = 0; i < slots; i += 4) {
+        const std::string out = "sorted[" + std::to_string(slots / 4 + i / 16) + "]";
+        if (i % 16 == 0) code += "    " + out + " = vec4(0.0);\n";
+        code += "    " + out + "[" + std::to_string(i / 4 % 4) + "] = " + element("id", i) +
+                " + 32.0 * (" + element("id", i + 1) + " + 32.0 * (" + element("id", i + 2) +
+                " + 32.0 * " + element("id", i + 3) + "));\n";
+    }
+    return code + "}\n";
+}
+
+osg::ref_ptr<osg::StateSet> withUnits(osg::ref_ptr<osg::StateSet> set)
+{
+    set->addUniform(new osg::Uniform(uniformName("slotDepths").c_str(), int(UNIT_FIRST_LAYER)));
+    set->addUniform(new osg::Uniform(uniformName("opaqueDepth").c_str(), int(UNIT_OPAQUE_DEPTH)));
+    set->addUniform(new osg::Uniform(uniformName("sortedSlots").c_str(), int(UNIT_SORTED_FAR)));
+    return set;
+}
+
+std::uint64_t key(SharedState first, int number)
+{
+    return static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(number);
+}
+
+} // namespace
+
+int affordableSlots(int width, int height)
+{
+    const std::size_t pixels = std::size_t(std::max(width, 1)) * std::size_t(std::max(height, 1));
+    const std::size_t slots = MEMORY_BUDGET / (pixels * BYTES_PER_SLOT);
+    return static_cast<int>(std::min(slots, std::size_t(CaptureLeaf::MAXIMUM_SLOTS))) / 4 * 4;
+}
+
+CaptureLeaf::CaptureLeaf(Accumulation* accumulation, const Settings& settings)
+    : _accumulation(accumulation), _settings(settings)
+{
+    setSupportsDisplayList(false);
+    setUseDisplayList(false);
+    setUseVertexBufferObjects(false);
+    setDataVariance(osg::Object::STATIC);
+}
+
+osg::Object* CaptureLeaf::cloneType() const
+{
+    return new CaptureLeaf(nullptr, Settings());
+}
+
+osg::ref_ptr<osg::StateSet> CaptureLeaf::stateSet(const Settings& settings)
+{
+    switch (settings.step) {
+    case SORT:
+        return sharedStateSet(key(SharedState::SORT_SLOTS, settings.slotCount), [&settings]() {
+            return withUnits(
+                screenState("sortslots.frag.glsl", false, sortCode(settings.slotCount)));
+        });
+    case WRITE_DEPTH:
+        return sharedStateSet(SharedState::NEAREST_SLOT, []() {
+            const auto set = withUnits(screenState("nearestslot.frag.glsl", true));
+            set->setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, true), FORCE_ON);
+            return set;
+        });
+    case BEGIN_REST:
+        return sharedStateSet(SharedState::FILL_REST, []() {
+            return withUnits(screenState("fillopaque.frag.glsl", true));
+        });
+    default:
+        break;
+    }
+    return clearState();
+}
+
+// In the frame that finds that the card has no memory for slots, surfaces are drawn after the
+// volume.
+void CaptureLeaf::drawWithout(osg::State& state) const
+{
+    reportOnce({ErrorCode::NOT_SUPPORTED,
+                "the card has no memory for captured surfaces; those in volumes are sorted rank "
+                "by rank, which takes longer"});
+    refuse(state.getContextID(), Refusal::CAPTURED_SURFACES);
+    const bool begins = _settings.step == BEGIN_SLOT ||
+                        (_settings.step == BEGIN_REST && !_accumulation->hasPlainTarget());
+    if (begins)
+        glEnable(GL_RASTERIZER_DISCARD);
+    else
+        glDisable(GL_RASTERIZER_DISCARD);
+}
+
+void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
+{
+    if (!_accumulation) return;
+    osg::State& state = *renderInfo.getState();
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    CaptureBuffers* made = _accumulation->captureBuffers(state, _settings.slotCount);
+    if (!made) {
+        drawWithout(state);
+        return;
+    }
+    const CaptureBuffers& buffers = *made;
+    const int slot = _settings.slot;
+    switch (_settings.step) {
+    case BEGIN_SLOT:
+        bindFramebuffer(state, buffers.framebuffers[slot]);
+        clearArea(_settings.area, GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+        if (_settings.conditional)
+            gl.glBeginConditionalRender(buffers.queries[slot - 1], WAIT_FOR_QUERY);
+        gl.glBeginQuery(GL_SAMPLES_PASSED_ARB, buffers.queries[slot]);
+        break;
+    case END_SLOT:
+        gl.glEndQuery(GL_SAMPLES_PASSED_ARB);
+        if (_settings.conditional) gl.glEndConditionalRender();
+        break;
+    case SORT:
+        bindFramebuffer(state, buffers.sortedFramebuffer);
+        state.applyTextureAttribute(UNIT_FIRST_LAYER, buffers.depths);
+        state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, resources->accumulation.opaqueDepth);
+        drawScreen(state, *resources, _settings.area);
+        _accumulation->bindTarget(state);
+        break;
+    case WRITE_DEPTH:
+        state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.sorted);
+        drawScreen(state, *resources, _settings.area);
+        break;
+    case BEGIN_REST:
+        gl.glBeginConditionalRender(buffers.queries[slot], WAIT_FOR_QUERY);
+        bindFramebuffer(state, buffers.restFramebuffer);
+        clearArea(_settings.area, GL_STENCIL_BUFFER_BIT);
+        state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, resources->accumulation.opaqueDepth);
+        drawScreen(state, *resources, _settings.area);
+        break;
+    case END_REST:
+        gl.glEndConditionalRender();
+        _accumulation->bindTarget(state);
+        break;
+    }
+    reapplyInNextFrame(state);
+    for (unsigned unit = UNIT_OPAQUE_DEPTH; unit <= UNIT_FIRST_LAYER; ++unit)
+        state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+}
+
+osg::ref_ptr<osg::StateSet> captureState(int fragment)
+{
+    return sharedStateSet(key(SharedState::CAPTURED_SURFACES, fragment), [fragment]() {
+        osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+        set->setAttributeAndModes(countingStencil(osg::Stencil::EQUAL, fragment), FORCE_ON);
+        set->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, true), FORCE_ON);
+        set->setMode(GL_BLEND, FORCE_OFF);
+        return set;
+    });
+}
+
+osg::ref_ptr<osg::StateSet> captureRestState(int fragments)
+{
+    return sharedStateSet(key(SharedState::REST_SURFACES, fragments), [fragments]() {
+        osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
+        // Passes where the count has come this far.
+        set->setAttributeAndModes(countingStencil(osg::Stencil::LEQUAL, fragments), FORCE_ON);
+        set->setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false), FORCE_ON);
+        return set;
+    });
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "../draw/Accumulation.h"
+#include "ForeignLeaf.h"
+
+#include <osg/Drawable>
+#include <osg/StateSet>
+
+#include <glm/vec4.hpp>
+
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+/// Sorts the fragments of any surfaces by depth, pixel by pixel, without touching their shaders.
+///
+/// Capture, K times: only the k-th fragment of a pixel to be rasterised leaves its depth in layer
+/// k, by stencil (the stencil-routed A-buffer of Myers and Bavoil, "Stencil Routed A-Buffer",
+/// SIGGRAPH Sketches 2007, one layer a pass). A full-screen pass sorts the K depths. Then, for each
+/// rank from far to near, the volume's segment behind that depth is drawn, and the surfaces again,
+/// where their depth equals it: exact order with any blend function, and no clipping, so no seams.
+/// Passes that no pixel needs are skipped by the GPU (conditional rendering on the capture's
+/// occlusion query). Fragments beyond the K-th of a pixel are drawn last, in the order that they
+/// come.
+class RankLeaf : public osg::Drawable
+{
+public:
+    static constexpr int LAYER_COUNT = LayerBuffers::COUNT;
+
+    enum Step
+    {
+        BEGIN_CAPTURE, ///< of layer `index`
+        END_CAPTURE,
+        SORT,
+        BEGIN_SEGMENT, ///< of the volume: before rank `index`
+        END_SEGMENT,
+        BEGIN_RANK, ///< surfaces of rank `index`
+        END_RANK,
+        BEGIN_REST, ///< fragments beyond the last layer
+        END_REST,
+        DEPTH ///< surfaces that write depth, for what is drawn after the bin
+    };
+
+    RankLeaf(Accumulation* accumulation, Step step, int index, const glm::ivec4& area);
+    osg::Object* cloneType() const override;
+    osg::Object* clone(const osg::CopyOp&) const override { return cloneType(); }
+    const char* libraryName() const override { return "osgVolumizer"; }
+    const char* className() const override { return "RankLeaf"; }
+    void drawImplementation(osg::RenderInfo& renderInfo) const override;
+
+    /// The state that a step is drawn with.
+    static osg::ref_ptr<osg::StateSet> stateSet(Step step);
+
+private:
+    void drawWithout(osg::State& state) const;
+
+    osg::ref_ptr<Accumulation> _accumulation;
+    Step _step;
+    int _index;
+    glm::ivec4 _area; ///< window rectangle: x, y, width, height
+};
+
+/// How surfaces are drawn into the layers, per step that begins with them.
+osg::ref_ptr<osg::StateSet> layerSurfaceState(RankLeaf::Step step, int index);
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,163 @@
+#include "BrickResidency.h"
+
+#include "../../core/voxels/VoxelData.h"
+
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+osg::ref_ptr<BrickResidency> BrickResidency::of(const Voxels& voxels)
+{
+    const auto data = voxels.renderData().getOrCreate(
+        []() -> osg::ref_ptr<RenderData> { return new BrickResidency; });
+    return static_cast<BrickResidency*>(data.get());
+}
+
+VoxelBlock BrickResidency::load(const Voxels& voxels, std::int64_t brick)
+{
+    return voxels.getBrick(brick);
+}
+
+osg::ref_ptr<const osg::Image> BrickResidency::texels(const Voxels& voxels, std::int64_t brick,
+                                                      bool gradients)
+{
+    const VoxelBlock block = load(voxels, brick);
+    if (!block) return nullptr;
+    return makeTexels(voxels, block, voxels.getLayout().brick(brick).samples.size(), gradients);
+}
+
+osg::ref_ptr<BrickTexture> BrickResidency::get(const Voxels& voxels, std::int64_t brick,
+                                               bool gradients, unsigned frame)
+{
+    const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        const auto found = _entries.find({brick, gradients});
+        if (found != _entries.end() && found->second.modifiedCount == modified &&
+            found->second.layoutCount == layout) {
+            found->second.lastFrame = frame;
+            return found->second.texture;
+        }
+    }
+    const bool readable = _cells.isScanned(voxels, brick) || load(voxels, brick);
+    std::lock_guard<std::mutex> lock(_mutex);
+    Entry& entry = _entries[{brick, gradients}];
+    // Another thread may have been first.
+    if (entry.modifiedCount != modified || entry.layoutCount != layout || !entry.texture) {
+        entry = {nullptr, modified, layout, frame};
+        if (readable)
+            entry.texture = new BrickTexture(texelFormat(voxels, gradients),
+                                             voxels.getLayout().brick(brick).samples.size(),
+                                             core::sampleCount(voxels.getSize()));
+    }
+    return entry.texture;
+}
+
+osg::ref_ptr<JoinedTexture> BrickResidency::joined(const Voxels& voxels, bool gradients)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    JoinedEntry& entry = _joined[gradients];
+    if (!entry.texture || entry.layoutCount != voxels.getLayoutCount())
+        entry = {new JoinedTexture(texelFormat(voxels, gradients), voxels.getSize()),
+                 voxels.getLayoutCount()};
+    return entry.texture;
+}
+
+bool BrickResidency::isJoined(const Voxels& voxels, bool gradients) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    const auto found = _joined.find(gradients);
+    return found != _joined.end() && found->second.layoutCount == voxels.getLayoutCount();
+}
+
+osg::ref_ptr<const osg::Image> BrickResidency::texel(const Voxels& voxels, std::int64_t brick,
+                                                     bool gradients)
+{
+    const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        const TexelEntry& entry = _texels[{brick, gradients}];
+        if (entry.image && entry.modifiedCount == modified && entry.layoutCount == layout)
+            return entry.image;
+    }
+    const auto range = voxels.getBrickRange(brick);
+    if (!(range.first <= range.second)) return nullptr;
+    const std::vector<double> values(static_cast<std::size_t>(voxels.getComponents()), range.first);
+    auto texel = std::make_shared<std::vector<unsigned char>>(values.size() *
+                                                              voxelTypeSize(voxels.getType()));
+    core::convertVoxels(values.data(), VoxelType::FLOAT64, texel->data(), voxels.getType(),
+                        values.size());
+    const osg::ref_ptr<const osg::Image> image =
+        makeTexels(voxels, {texel, texel->data(), texel->size()}, glm::ivec3(1), gradients);
+    std::lock_guard<std::mutex> lock(_mutex);
+    _texels[{brick, gradients}] = {image, modified, layout};
+    return image;
+}
+
+Residency BrickResidency::residency(const Voxels& voxels, std::int64_t brick, bool gradients,
+                                    unsigned contextId) const
+{
+    const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
+    osg::ref_ptr<JoinedTexture> joined;
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        const auto found = _entries.find({brick, gradients});
+        if (found != _entries.end() && found->second.modifiedCount == modified &&
+            found->second.layoutCount == layout) {
+            if (!found->second.texture) return Residency::NEVER;
+            if (found->second.texture->isIn(contextId)) return Residency::RESIDENT;
+        }
+        const auto all = _joined.find(gradients);
+        if (all != _joined.end() && all->second.layoutCount == layout) joined = all->second.texture;
+    }
+    return joined && joined->has(contextId, brick, modified) ? Residency::RESIDENT
+                                                             : Residency::NOT_YET;
+}
+
+unsigned BrickResidency::lastUse(std::int64_t brick, bool gradients) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    const auto found = _entries.find({brick, gradients});
+    return found == _entries.end() ? 0 : found->second.lastFrame;
+}
+
+std::int64_t BrickResidency::bytes(unsigned contextId) const
+{
+    std::int64_t sum = 0;
+    std::vector<osg::ref_ptr<JoinedTexture>> joined;
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        for (const auto& entry : _entries)
+            if (entry.second.texture && entry.second.texture->isIn(contextId))
+                sum += entry.second.texture->bytes();
+        for (const auto& entry : _joined)
+            joined.push_back(entry.second.texture);
+    }
+    for (const auto& texture : joined)
+        if (texture->isIn(contextId)) sum += texture->bytes();
+    return sum;
+}
+
+void BrickResidency::resizeGLObjectBuffers(unsigned int maximum)
+{
+    _cells.resizeGLObjectBuffers(maximum);
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (auto& entry : _entries)
+        if (entry.second.texture) entry.second.texture->resizeGLObjectBuffers(maximum);
+    for (auto& entry : _joined)
+        entry.second.texture->resizeGLObjectBuffers(maximum);
+}
+
+void BrickResidency::releaseGLObjects(osg::State* state) const
+{
+    _cells.releaseGLObjects(state);
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& entry : _entries)
+        if (entry.second.texture) entry.second.texture->releaseGLObjects(state);
+    for (const auto& entry : _joined)
+        entry.second.texture->releaseGLObjects(state);
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "../context/ContextLimits.h"
+#include "CoarseTexture.h"
+#include "TexelFormat.h"
+
+#include "../../Voxels.h"
+
+#include <osg/RenderInfo>
+#include <osg/Texture3D>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+
+namespace osgVolumizer {
+namespace render {
+
+/// One brick, in one state of its data, as a texture in each context that has drawn it. Keeps no
+/// texels: they are asked for when a context lacks them. Thread safe.
+class BrickTexture : public osg::Referenced
+{
+public:
+    /// The brick's texels; null where the source fails.
+    using Load = std::function<osg::ref_ptr<const osg::Image>()>;
+
+    BrickTexture(const TexelFormat& format, const glm::ivec3& size, std::int64_t volumeTexels)
+        : _format(format), _size(size), _volumeTexels(volumeTexels)
+    {
+    }
+
+    /// Applies the texture to a unit, as large and in such a format as suits the context; coarser
+    /// where the card refuses it, and none where it refuses that too (both reported once). Counts
+    /// what is uploaded. Call in the draw thread.
+    CoarseTexture apply(osg::RenderInfo& renderInfo, const ContextLimits& limits, const Load& load,
+                        unsigned unit);
+    bool isIn(unsigned contextId) const;
+    /// Of the texels as they are uploaded.
+    std::int64_t bytes() const;
+
+    void resizeGLObjectBuffers(unsigned int maximum);
+    void releaseGLObjects(osg::State* state);
+
+private:
+    struct Copy
+    {
+        std::mutex mutex; ///< of what follows; not held while texels are loaded
+        osg::ref_ptr<osg::Texture3D> texture;
+        bool refused = false;
+    };
+
+    std::shared_ptr<Copy> copyIn(unsigned contextId);
+    void make(osg::RenderInfo& renderInfo, const ContextLimits& limits, const osg::Image& texels,
+              Copy& copy, unsigned unit) const;
+
+    const TexelFormat _format;
+    const glm::ivec3 _size;
+    const std::int64_t _volumeTexels;
+    mutable std::mutex _mutex;
+    std::map<unsigned, std::shared_ptr<Copy>> _copies; ///< by context
+};
+
+/// Counts bricks whose texels went to GL in this frame.
+void countUploaded(osg::RenderInfo& renderInfo, double bricks, double bytes);
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "BrickCells.h"
+#include "DrawnBrick.h"
+#include "JoinedTexture.h"
+
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+struct JoinedBricks;
+
+/// A brick that this frame may have to draw.
+struct SelectedBrick
+{
+    std::int64_t index = 0;
+    core::Box3d box;     ///< frame; clip box, cut down to the geometry and to what shows
+    core::Box3d clipBox; ///< voxel frame
+    DrawnBrick texels;   ///< none where joined
+    glm::vec3 textureScale{1.0f}, textureOffset{0.0f};
+    std::shared_ptr<const BrickCells> cells;    ///< null where nothing is known
+    std::shared_ptr<const JoinedBricks> joined; ///< null for one brick with a texture of its own
+    int brickCount = 1;                         ///< how many it stands for
+};
+
+/// The bricks of a volume that a view needs, in the texture that they share.
+struct JoinedBricks
+{
+    osg::ref_ptr<JoinedTexture> texture;
+    std::vector<JoinedPiece> pieces;
+    osg::ref_ptr<const Voxels> voxels;
+    bool gradients = false;
+    std::vector<SelectedBrick> apart; ///< to draw one by one where the card refuses the texture
+};
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,208 @@
+#include "TableTextures.h"
+
+#include "../context/Allocation.h"
+#include "../context/ReportOnce.h"
+
+#include "../../core/transfer/PreIntegration.h"
+
+#include <osg/Notify>
+
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+constexpr double BITS = 1.0 / 0.6931471805599453; // of extinction, in units of -ln(transmittance)
+
+// Few enough to stay in a cache, and to be made in a millisecond; so many that the nearest one
+// hardly differs.
+constexpr int ENTRIES = 16384;
+
+// Bits times entries: differences of floats that are not larger are good to 1e-4 bits.
+constexpr float LARGEST_INTEGRAL = 8192.0f;
+
+// Whether midpoint sampling at a usual rate would be off by so much that pre-integration pays; says
+// why.
+bool needsPreIntegration(const core::TransferFunction& function, const std::string& name)
+{
+    // A 64th of the range is what the value commonly changes by from sample to sample.
+    constexpr double WINDOW = 1.0 / 64.0, TOLERANCE = 0.03;
+    const core::WindowError error = core::windowError(function, 0.0, 1.0, WINDOW);
+    if (error.error <= TOLERANCE) return false;
+    OSG_INFO << "osgVolumizer: lookup table \"" << name << "\" is pre-integrated: at "
+             << error.value << " of the range, samples a " << 1.0 / WINDOW
+             << "th of it apart miss the mean of what lies between by " << error.error << "."
+             << std::endl;
+    return true;
+}
+
+osg::ref_ptr<osg::TextureBuffer> makeTexture(const std::vector<glm::vec4>& texels)
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(static_cast<int>(texels.size()), 1, 1, GL_RGBA, GL_FLOAT, 1);
+    std::memcpy(image->data(), texels.data(), texels.size() * sizeof(glm::vec4));
+    osg::ref_ptr<osg::TextureBuffer> texture = new osg::TextureBuffer;
+    texture->setImage(image);
+    texture->setInternalFormat(GL_RGBA32F_ARB);
+    texture->setUnRefImageDataAfterApply(false);
+    texture->setDataVariance(osg::Object::STATIC);
+    return texture;
+}
+
+// Prefix sums over the entries that show something, and over those about which integrals grow.
+void countShown(const std::vector<glm::vec4>& texels, TableTexture& table)
+{
+    const auto count = static_cast<std::size_t>(table.count);
+    auto entries = std::make_shared<std::vector<int>>(1, 0);
+    auto gaps = std::make_shared<std::vector<int>>(1, 0);
+    for (std::size_t i = 0; i < count; ++i)
+        entries->push_back(entries->back() + (texels[i].a > 0.0f));
+    for (std::size_t i = 0; table.integrals && i < count; ++i)
+        gaps->push_back(gaps->back() + (texels[count + i + 1].a > texels[count + i].a));
+    table.shownEntries = std::move(entries);
+    table.shownGaps = std::move(gaps);
+}
+
+std::shared_ptr<const TableTexture> makeTable(const LookupTable& table, const osg::Vec2d& range,
+                                              VolumeAppearance::Lookup lookup)
+{
+    static std::atomic<unsigned> nextId{1};
+    auto made = std::make_shared<TableTexture>();
+    TableTexture& result = *made;
+    result.function = table.getNormalizedFunction(range);
+    result.id = nextId++;
+    result.integrals = lookup == VolumeAppearance::PREINTEGRATED ||
+                       (lookup == VolumeAppearance::AUTOMATIC_LOOKUP &&
+                        needsPreIntegration(*result.function, table.getName()));
+    result.count = ENTRIES;
+    std::vector<glm::vec4> texels = result.function->tabulateExtinction(ENTRIES, 0.0, 1.0, false);
+    for (glm::vec4& t : texels)
+        t.a *= static_cast<float>(BITS);
+    const auto emission = [](const glm::vec4& t) { return glm::vec4(glm::vec3(t) * t.a, t.a); };
+    result.low = emission(texels.front());
+    result.high = emission(texels.back());
+    if (result.integrals) {
+        const core::TransferIntegral integral(*result.function);
+        const double half = 0.5 / (ENTRIES - 1.0);
+        for (const glm::dvec4& sum : integral.tabulate(ENTRIES + 1, -half, 1.0 + half))
+            texels.emplace_back(sum * BITS);
+        result.shortRuns = texels.back().a > LARGEST_INTEGRAL;
+    } else {
+        texels.push_back(texels.back()); // for interpolation at the last
+    }
+    countShown(texels, result);
+    result.texture = makeTexture(texels);
+    return made;
+}
+
+// What a lookup table's textures are made from.
+struct TableKey
+{
+    unsigned modifiedCount;
+    osg::Vec2d range;
+    VolumeAppearance::Lookup lookup;
+    bool operator==(const TableKey& o) const
+    {
+        return modifiedCount == o.modifiedCount && range == o.range && lookup == o.lookup;
+    }
+};
+
+// The textures of one lookup table that an appearance still has.
+class SharedTables : public RenderData
+{
+public:
+    static osg::ref_ptr<SharedTables> of(const LookupTable& table)
+    {
+        const auto data = table.renderData().getOrCreate(
+            []() -> osg::ref_ptr<RenderData> { return new SharedTables; });
+        return static_cast<SharedTables*>(data.get());
+    }
+    std::shared_ptr<const TableTexture> get(const LookupTable& table, const TableKey& key)
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        std::shared_ptr<const TableTexture> result;
+        _tables.remove_if([](const auto& known) { return known.second.expired(); });
+        for (const auto& known : _tables)
+            if (known.first == key) result = known.second.lock();
+        if (result) return result;
+        result = makeTable(table, key.range, key.lookup);
+        _tables.emplace_front(key, result);
+        return result;
+    }
+    // Appearances do that.
+    void resizeGLObjectBuffers(unsigned int) override {}
+    void releaseGLObjects(osg::State*) const override {}
+
+private:
+    std::mutex _mutex;
+    std::list<std::pair<TableKey, std::weak_ptr<const TableTexture>>> _tables;
+};
+
+} // namespace
+
+bool TableTexture::shows(double lowFraction, double highFraction) const
+{
+    // The shader's floats are off by less than a hundredth of an entry.
+    const double last = count - 1.0;
+    if (!(lowFraction <= highFraction)) return false;
+    const auto entry = [last](double v) {
+        return static_cast<std::size_t>(std::clamp(v, 0.0, last));
+    };
+    const std::size_t first = entry(std::floor(lowFraction * last + 0.01));
+    const std::size_t end = std::max(entry(std::ceil(highFraction * last - 0.01)), first) + 1;
+    return (*shownEntries)[end] > (*shownEntries)[first] ||
+           (integrals && (*shownGaps)[end] > (*shownGaps)[first]);
+}
+
+bool applyTable(osg::State& state, osg::TextureBuffer* texture, unsigned unit)
+{
+    if (applyAllocated(state, AllocationRequest::TABLE, *texture, unit)) return true;
+    reportOnce({ErrorCode::TOO_LARGE, "a lookup table is refused by the graphics card; volumes "
+                                      "with it are not drawn"});
+    return false;
+}
+
+TableTexture TableTextures::get(const LookupTable& table, const osg::Vec2d& range,
+                                VolumeAppearance::Lookup lookup)
+{
+    if (lookup == VolumeAppearance::BEFORE_INTERPOLATION)
+        lookup = VolumeAppearance::AFTER_INTERPOLATION;
+    const unsigned modified = table.getModifiedCount();
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (auto i = _entries.begin(); i != _entries.end(); ++i) {
+        if (i->table != &table || i->modifiedCount != modified || i->range != range ||
+            i->lookup != lookup)
+            continue;
+        _entries.splice(_entries.begin(), _entries, i);
+        return *_entries.front().texture;
+    }
+    _entries.push_front({&table, modified, range, lookup,
+                         SharedTables::of(table)->get(table, {modified, range, lookup})});
+    if (_entries.size() > CAPACITY) _entries.pop_back();
+    return *_entries.front().texture;
+}
+
+void TableTextures::resizeGLObjectBuffers(unsigned int maximum)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (auto& entry : _entries)
+        entry.texture->texture->resizeGLObjectBuffers(maximum);
+}
+
+void TableTextures::releaseGLObjects(osg::State* state) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& entry : _entries)
+        entry.texture->texture->releaseGLObjects(state);
+}
+
+} // namespace render
+} // namespace osgVolumizer

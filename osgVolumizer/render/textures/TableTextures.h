@@ -1,0 +1,70 @@
+#pragma once
+
+#include "../../VolumeAppearance.h"
+
+#include <osg/TextureBuffer>
+
+#include <glm/vec4.hpp>
+
+#include <list>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+/// A lookup table as a texture buffer, read at the nearest entry, which on some devices costs a
+/// third of what a filtered texture does. Entry i of count is at i/(count-1) of the voxels' range:
+/// colour, and extinction in bits per opacity unit. Where there are integrals, count + 1 texels
+/// follow: the integral of extinction times colour, and of extinction, up to half an entry before
+/// each, in entries, so that the difference of two over the difference of their indices is a mean.
+struct TableTexture
+{
+    osg::ref_ptr<osg::TextureBuffer> texture;
+    bool integrals = false;
+    bool shortRuns = false;          ///< integrals are too large for differences over few entries
+    int count = 1;                   ///< entries
+    glm::vec4 low{0.0f}, high{0.0f}; ///< extinction times colour, extinction: beyond the ends
+    /// Numbers of entries, and of gaps between entries (integrals only), that show something before
+    /// each.
+    std::shared_ptr<const std::vector<int>> shownEntries, shownGaps;
+    LookupTable::Function function; ///< of the fraction of the range
+    /// Whether anything is shown of values between two fractions of the range, low <= high, the way
+    /// the table is read: at entries, or over runs of them.
+    bool shows(double lowFraction, double highFraction) const;
+    unsigned id = 0; ///< differs for every texture ever made
+};
+
+/// Applies the texture of a table to a unit; false, reported once, where the card refuses it: what
+/// it is for is not drawn.
+bool applyTable(osg::State& state, osg::TextureBuffer* texture, unsigned unit);
+
+/// Tables of one appearance, by what they were made from. Those of a lookup table that appearances
+/// share are shared too. Thread safe.
+class TableTextures
+{
+public:
+    /// BEFORE_INTERPOLATION needs what AFTER_INTERPOLATION needs.
+    TableTexture get(const LookupTable& table, const osg::Vec2d& range,
+                     VolumeAppearance::Lookup lookup);
+    void resizeGLObjectBuffers(unsigned int maximum);
+    void releaseGLObjects(osg::State* state) const;
+
+private:
+    struct Entry
+    {
+        osg::ref_ptr<const LookupTable> table;
+        unsigned modifiedCount;
+        osg::Vec2d range;
+        VolumeAppearance::Lookup lookup;
+        std::shared_ptr<const TableTexture> texture;
+    };
+    static constexpr std::size_t CAPACITY = 3;
+
+    mutable std::mutex _mutex;
+    std::list<Entry> _entries; ///< most recent first
+};
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "PreparedGeometry.h"
+
+#include <list>
+#include <memory>
+#include <mutex>
+
+namespace osgVolumizer {
+class VolumeGeometry;
+
+namespace render {
+
+class SliceCache;
+
+/// Prepared geometries of one VolumeGeometry, by what they were made from. Thread safe.
+class GeometryCache
+{
+public:
+    GeometryCache();
+    /// The slices of all views.
+    SliceCache& slices() const { return *_slices; }
+    std::shared_ptr<const PreparedGeometry> get(const VolumeGeometry& geometry,
+                                                const Voxels* voxels);
+
+private:
+    struct Entry
+    {
+        unsigned geometryCount;
+        const Voxels* voxels;
+        unsigned layoutCount;
+        std::shared_ptr<const PreparedGeometry> prepared;
+    };
+    static constexpr std::size_t CAPACITY = 4;
+
+    std::shared_ptr<SliceCache> _slices;
+    std::mutex _mutex;
+    std::list<Entry> _entries; ///< most recent first
+};
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "../draw/VolumeDrawable.h"
+#include "../textures/SelectedBrick.h"
+#include "PreparedGeometry.h"
+
+#include "../../VolumeAppearance.h"
+#include "../../VolumeGeometry.h"
+#include "../../core/ordering/DepthSchedule.h"
+#include "../../core/sampling/Polygonize.h"
+
+#include <osgUtil/RenderLeaf>
+
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+/// One volume in one view of one frame, from cull to sort.
+struct VolumeInstance
+{
+    osg::ref_ptr<const VolumeGeometry> geometry;
+    osg::ref_ptr<const VolumeAppearance> appearance;
+    std::shared_ptr<const PreparedGeometry> prepared;
+    std::shared_ptr<const VolumeLook> look;
+    osg::ref_ptr<osg::RefMatrix> frameToEye; ///< model-view of the leaf
+    osg::ref_ptr<VolumeDrawable> drawable; ///< of the leaf that stands for the volume until sorting
+    std::vector<SelectedBrick> bricks;
+    /// What selection found: bricks that show nothing, bricks of one value; cells in the boxes of
+    /// the others, and those of them that show something.
+    std::int64_t emptyBricks = 0, homogeneousBricks = 0, cellCount = 0, occupiedCells = 0;
+    double cellSize = 8.0; ///< voxels
+    core::SamplingParameters sampling;
+    std::uint64_t viewId = 0; ///< see viewIdOf()
+
+    // Known once sorting begins:
+    osgUtil::RenderLeaf* leaf = nullptr;
+    core::DepthInterval depth; ///< of the selected bricks, in front of the near plane
+    /// The same of all the volume: where its samples are counted from, whatever is left out.
+    core::DepthInterval wholeDepth;
+};
+
+} // namespace render
+} // namespace osgVolumizer
