@@ -36,37 +36,13 @@ std::shared_ptr<ContextResources> take(unsigned contextId)
     return resources;
 }
 
-// Textures and programs are OSG's, and go with their last reference.
-void deleteNames(ContextResources& resources, osg::GLExtensions& gl)
-{
-    resources.vertices.release(gl);
-    resources.indices.release(gl);
-    AccumulationBuffers& buffers = resources.accumulation;
-    LayerBuffers& layers = buffers.layers;
-    for (GLuint* name :
-         {&buffers.framebuffer, &buffers.layerFramebuffer, &buffers.opaqueFramebuffer,
-          &layers.sortedFramebuffer, &layers.rankFramebuffer, &resources.rays.framebuffer})
-        if (*name) gl.glDeleteFramebuffers(1, name);
-    CaptureBuffers& capture = resources.capture;
-    if (capture.queries[0]) {
-        gl.glDeleteFramebuffers(CaptureBuffers::MAXIMUM_SLOTS, capture.framebuffers);
-        gl.glDeleteFramebuffers(1, &capture.sortedFramebuffer);
-        gl.glDeleteFramebuffers(1, &capture.restFramebuffer);
-        gl.glDeleteQueries(CaptureBuffers::MAXIMUM_SLOTS, capture.queries);
-    }
-    if (layers.queries[0]) {
-        gl.glDeleteFramebuffers(LayerBuffers::COUNT, layers.layerFramebuffers);
-        gl.glDeleteQueries(LayerBuffers::COUNT, layers.queries);
-    }
-}
-
 void releaseContext(osg::State& state, bool current)
 {
     releaseSharedStateSets(&state);
     const std::shared_ptr<ContextResources> resources = take(state.getContextID());
     // Without the extensions there never was a context to make anything in.
     osg::GLExtensions* gl = osg::GLExtensions::Get(state.getContextID(), false);
-    if (resources && gl && current) deleteNames(*resources, *gl);
+    if (resources && gl && current) resources->release(*gl);
 }
 
 // OSG keeps one for each context number that has resources, and tells it when they go.
@@ -99,6 +75,15 @@ ContextResources::ContextResources(osg::State& state) : limits(queryContextLimit
     osg::setGLExtensionFuncPtr(glGetFramebufferAttachmentParameteriv,
                                "glGetFramebufferAttachmentParameteriv",
                                "glGetFramebufferAttachmentParameterivEXT");
+}
+
+void ContextResources::release(osg::GLExtensions& gl)
+{
+    vertices.release(gl);
+    indices.release(gl);
+    for (const auto& part : _parts)
+        part.second->release(gl);
+    _parts.clear();
 }
 
 void StreamBuffer::stream(osg::GLExtensions& gl, GLenum target, const void* data, std::size_t bytes)

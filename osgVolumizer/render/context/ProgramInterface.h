@@ -9,13 +9,13 @@ enum TextureUnit : unsigned
     UNIT_VOXELS,
     UNIT_TABLE,
     UNIT_OPAQUE_DEPTH,
-    UNIT_LAYER_DEPTH,
-    UNIT_SORTED_FAR, ///< the four farthest depths of a pixel's surfaces
-    UNIT_SORTED_NEAR,
+    UNIT_SPLIT_DEPTH,
+    UNIT_SORTED_FAR,  ///< ranked: the four farthest depths; captured: all sorted depths
+    UNIT_SORTED_NEAR, ///< ranked: the four nearest depths; captured: colours
     UNIT_CELLS,
-    UNIT_FIRST_LAYER,                    ///< and the following: captured depths
-    UNIT_FIRST_PAINT = UNIT_FIRST_LAYER, ///< and the following, in other programs
-    UNIT_COUNT = UNIT_FIRST_LAYER + 8
+    UNIT_FIRST_CAPTURED,                    ///< and the following: captured depths
+    UNIT_FIRST_PAINT = UNIT_FIRST_CAPTURED, ///< and the following, in other programs
+    UNIT_COUNT = UNIT_FIRST_CAPTURED + 8
 };
 /// Vertex attributes.
 enum Attribute : unsigned

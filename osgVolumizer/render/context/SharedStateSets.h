@@ -14,11 +14,11 @@ enum class SharedState : std::uint64_t
     SORT = std::uint64_t(1) << 63,
     FILL,
     CLEAR,
-    ACCUMULATION,
+    SURFACE_DEPTHS,
     DEPTH,
     NEAREST_SLOT,
     FILL_REST,
-    LAYER_SURFACES = SORT + 1000, ///< these and the following
+    RANKED_SURFACES = SORT + 1000, ///< these and the following
     SORT_SLOTS = SORT + 2000,
     CAPTURED_SURFACES = SORT + 3000,
     REST_SURFACES = SORT + 4000

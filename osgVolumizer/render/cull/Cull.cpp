@@ -72,7 +72,7 @@ void registerVolume(std::unique_ptr<VolumeInstance> volume, osgUtil::CullVisitor
     if (volume->look->features.voxels)
         count(cv.getCurrentCamera(), cv.getFrameStamp(), "osgVolumizer voxels per sample",
               volume->look->voxelsPerSample);
-    const osg::ref_ptr<osg::StateSet> stateSet = volumeStateSet(volume->look->features);
+    const osg::ref_ptr<osg::StateSet> stateSet = volumeStateSet(partOf(*volume).features);
     cv.pushStateSet(stateSet);
     volume->drawable = new VolumeDrawable;
     cv.addDrawableAndDepth(volume->drawable, volume->frameToEye.get(), depth);
@@ -153,11 +153,10 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
         new osg::RefMatrix(toOsg(toGlm(objectToEye) * volume->prepared->frameToObject));
     TableTexture table;
     if (voxels) table = chooseSampling(*volume, visitor);
-    const std::shared_ptr<VolumeLook> look = makeLook(*volume, table, visitor);
-    volume->look = look;
+    volume->look = makeLook(*volume, table, visitor);
     if (voxels) {
         selectBricks(*volume, *voxels, visitor);
-        look->features.skipping = isWorthSkipping(*volume);
+        volume->skipping = isWorthSkipping(*volume);
         report(*volume, *voxels, visitor);
         if (volume->bricks.empty()) return;
     }
@@ -166,7 +165,7 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
         return;
 
     if (osg::StateSet* own = geometry.getStateSet()) visitor.pushStateSet(own);
-    look->above = stateAbove(visitor.getCurrentStateGraph());
+    volume->above = stateAbove(visitor.getCurrentStateGraph());
     registerVolume(std::move(volume), visitor);
     if (geometry.getStateSet()) visitor.popStateSet();
 }

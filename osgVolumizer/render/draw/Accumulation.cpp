@@ -5,7 +5,7 @@
 #include "../context/ScissorScope.h"
 #include "../context/ScreenPass.h"
 #include "../context/Statistics.h"
-#include "../context/TargetBuffers.h"
+#include "AccumulationBuffers.h"
 #include "VolumeProgram.h"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ void reportMemory(const std::string& what)
 // The target, in the best format that there is memory for.
 bool makeTarget(osg::State& state, int bits, ContextResources& resources)
 {
-    AccumulationBuffers& buffers = resources.accumulation;
+    AccumulationBuffers& buffers = resources.part<AccumulationBuffers>();
     const std::vector<GLenum> formats = colorFormats(bits, resources.limits);
     if (!ensureTarget(state, buffers, formats)) {
         reportMemory("a target; volumes are drawn to the framebuffer, which may round more");
@@ -86,23 +86,6 @@ void Accumulation::restrictTo(const glm::ivec4& area)
     _area = visiblePart(area);
 }
 
-CaptureBuffers* Accumulation::captureBuffers(osg::State& state, int slotCount) const
-{
-    ContextResources& resources = *contextResources(state);
-    const bool made =
-        _redirected && ensureCapture(state, resources.accumulation, resources.capture, slotCount);
-    bindTarget(state);
-    return made ? &resources.capture : nullptr;
-}
-
-LayerBuffers* Accumulation::layerBuffers(osg::State& state) const
-{
-    AccumulationBuffers& buffers = contextResources(state)->accumulation;
-    const bool made = _redirected && ensureLayers(state, buffers);
-    bindTarget(state);
-    return made ? &buffers.layers : nullptr;
-}
-
 bool Accumulation::needsTarget() const
 {
     return _targetRequired || _framebuffer.multisampled || _framebuffer.colorBits < _settings.bits;
@@ -127,7 +110,7 @@ void Accumulation::begin(osg::RenderInfo& renderInfo)
 {
     osg::State& state = *renderInfo.getState();
     const std::shared_ptr<ContextResources> resources = contextResources(state);
-    AccumulationBuffers& buffers = resources->accumulation;
+    AccumulationBuffers& buffers = resources->part<AccumulationBuffers>();
     _framebuffer = queryFramebuffer(*resources);
     buffers.drawBuffers = _framebuffer.drawBuffers;
     _depthCleared = _depthCleared || _framebuffer.depthBits == 0;
@@ -168,7 +151,7 @@ void Accumulation::begin(osg::RenderInfo& renderInfo)
 void Accumulation::bindTarget(osg::State& state) const
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const GLuint target = contextResources(state)->accumulation.framebuffer;
+    const GLuint target = contextResources(state)->part<AccumulationBuffers>().framebuffer;
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, _redirected ? target : _framebuffer.draw);
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, _redirected ? target : _framebuffer.read);
 }
@@ -223,7 +206,7 @@ void Accumulation::copyToTarget(osg::State& state, AccumulationBuffers& buffers)
 // be drawn to together with one of one sample.
 void Accumulation::shareOtherBuffers(osg::State& state, ContextResources& resources) const
 {
-    AccumulationBuffers& buffers = resources.accumulation;
+    AccumulationBuffers& buffers = resources.part<AccumulationBuffers>();
     buffers.drawBuffers = {GL_COLOR_ATTACHMENT0_EXT};
     if (_framebuffer.drawBuffers.size() > 1 && _framebuffer.draw && !_framebuffer.multisampled)
         buffers.drawBuffers = shareAttachments(*state.get<osg::GLExtensions>(), resources,
@@ -240,30 +223,31 @@ void Accumulation::end(osg::RenderInfo& renderInfo)
     state.haveAppliedTextureAttribute(UNIT_OPAQUE_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
-void Accumulation::beginLayer(osg::RenderInfo& renderInfo, const glm::ivec4& area)
+void Accumulation::beginSplit(osg::RenderInfo& renderInfo, const glm::ivec4& area)
 {
     osg::State& state = *renderInfo.getState();
-    AccumulationBuffers& buffers = contextResources(state)->accumulation;
-    if (!ensureLayerDepth(state, buffers)) {
+    AccumulationBuffers& buffers = contextResources(state)->part<AccumulationBuffers>();
+    if (!ensureSplitDepth(state, buffers)) {
         // Nothing splits the segment then.
         glEnable(GL_RASTERIZER_DISCARD);
         return;
     }
-    bindFramebuffer(state, buffers.layerFramebuffer);
+    bindFramebuffer(state, buffers.splitFramebuffer);
     clearArea(area, GL_DEPTH_BUFFER_BIT);
 }
 
-void Accumulation::endLayer(osg::RenderInfo& renderInfo)
+void Accumulation::endSplit(osg::RenderInfo& renderInfo)
 {
     osg::State& state = *renderInfo.getState();
-    if (!contextResources(state)->accumulation.layerDepth) glDisable(GL_RASTERIZER_DISCARD);
+    if (!contextResources(state)->part<AccumulationBuffers>().splitDepth)
+        glDisable(GL_RASTERIZER_DISCARD);
     bindTarget(state);
 }
 
 void Accumulation::writeBack(osg::State& state, ContextResources& resources) const
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    AccumulationBuffers& buffers = resources.accumulation;
+    AccumulationBuffers& buffers = resources.part<AccumulationBuffers>();
     if (buffers.drawBuffers.size() > 1)
         unshareAttachments(gl, buffers.framebuffer, buffers.drawBuffers.size());
     buffers.drawBuffers = _framebuffer.drawBuffers;
@@ -277,9 +261,9 @@ void Accumulation::writeBack(osg::State& state, ContextResources& resources) con
     if (!_depthKept || _framebuffer.depthBits == 0) return;
     // Not a blit, which would need the framebuffer's very format.
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth);
-    state.applyTextureAttribute(UNIT_LAYER_DEPTH, buffers.depth);
+    state.applyTextureAttribute(UNIT_SPLIT_DEPTH, buffers.depth);
     drawScreen(state, resources, _area);
-    state.haveAppliedTextureAttribute(UNIT_LAYER_DEPTH, osg::StateAttribute::TEXTURE);
+    state.haveAppliedTextureAttribute(UNIT_SPLIT_DEPTH, osg::StateAttribute::TEXTURE);
 }
 
 } // namespace render

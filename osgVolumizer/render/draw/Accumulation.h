@@ -2,6 +2,7 @@
 
 #include "../context/ContextResources.h"
 #include "../context/Framebuffer.h"
+#include "AccumulationBuffers.h"
 
 #include <osg/Drawable>
 #include <osgUtil/RenderLeaf>
@@ -39,9 +40,11 @@ public:
     void end(osg::RenderInfo& renderInfo);
     /// Redirects drawing to an empty depth buffer, where surfaces leave their nearest depth...
     /// \param area window rectangle (x, y, width, height) that is cleared and drawn to
-    void beginLayer(osg::RenderInfo& renderInfo, const glm::ivec4& area);
+    void beginSplit(osg::RenderInfo& renderInfo, const glm::ivec4& area);
     /// ...for segments to be split at.
-    void endLayer(osg::RenderInfo& renderInfo);
+    void endSplit(osg::RenderInfo& renderInfo);
+    /// Between begin and end: whether there is a target, or the framebuffer is drawn to as it is.
+    bool hasTarget() const { return _redirected; }
     /// Where surfaces may be drawn by a state that counts stencil values: a target without any.
     bool hasPlainTarget() const { return _redirected && !_stencilUsed; }
     /// Draws to the target again: the framebuffer itself where nothing was redirected.
@@ -62,11 +65,6 @@ public:
     void restrictTo(const glm::ivec4& area);
     /// Before the frame is drawn: the depth buffer is as it was cleared, to 1, so it is not copied.
     void expectClearedDepth() { _depthCleared = true; }
-    /// The buffers of sorted layers, with the target's colour; null where the card has no memory
-    /// for them.
-    LayerBuffers* layerBuffers(osg::State& state) const;
-    /// The buffers of captured surfaces, with at least so many slots; null likewise.
-    CaptureBuffers* captureBuffers(osg::State& state, int slotCount) const;
 
 private:
     bool needsTarget() const;

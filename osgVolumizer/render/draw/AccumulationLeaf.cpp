@@ -22,7 +22,7 @@ osg::ref_ptr<osg::StateSet> depthStateSet()
         set->addUniform(
             new osg::Uniform(uniformName("opaqueDepth").c_str(), int(UNIT_OPAQUE_DEPTH)));
         set->addUniform(
-            new osg::Uniform(uniformName("targetDepth").c_str(), int(UNIT_LAYER_DEPTH)));
+            new osg::Uniform(uniformName("targetDepth").c_str(), int(UNIT_SPLIT_DEPTH)));
         return set;
     });
 }
@@ -48,11 +48,11 @@ void AccumulationLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
     case END:
         _accumulation->end(renderInfo);
         break;
-    case BEGIN_LAYER:
-        _accumulation->beginLayer(renderInfo, _area);
+    case BEGIN_SPLIT:
+        _accumulation->beginSplit(renderInfo, _area);
         break;
-    case END_LAYER:
-        _accumulation->endLayer(renderInfo);
+    case END_SPLIT:
+        _accumulation->endSplit(renderInfo);
         break;
     }
     reapplyInNextFrame(*renderInfo.getState());

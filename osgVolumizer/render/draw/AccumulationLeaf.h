@@ -13,8 +13,8 @@ public:
     {
         BEGIN,
         END,
-        BEGIN_LAYER,
-        END_LAYER
+        BEGIN_SPLIT,
+        END_SPLIT
     };
 
     AccumulationLeaf(Accumulation* accumulation, Step step, const glm::ivec4& area);

@@ -63,16 +63,11 @@ void setCells(const BatchDrawing& drawing, const BrickCells* cells)
 // shader.
 BrickBatch apartBatch(const BrickBatch& joined, const SelectedBrick& brick)
 {
-    BrickBatch batch = joined;
-    batch.joined = nullptr;
-    batch.brick = brick.texels;
-    batch.cells = brick.cells;
-    batch.clipMin = glm::max(joined.clipMin, glm::vec3(brick.box.min));
-    batch.clipMax = glm::min(joined.clipMax, glm::vec3(brick.box.max));
-    batch.brickMin = glm::vec3(brick.clipBox.min);
-    batch.brickMax = glm::vec3(brick.clipBox.max);
-    batch.textureScale = brick.textureScale;
-    batch.textureOffset = brick.textureOffset;
+    BrickBatch batch = batchOf(brick);
+    batch.clipMin = glm::max(joined.clipMin, batch.clipMin);
+    batch.clipMax = glm::min(joined.clipMax, batch.clipMax);
+    batch.firstIndex = joined.firstIndex;
+    batch.indexCount = joined.indexCount;
     return batch;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "../context/ContextLimits.h"
-#include "VolumeDrawable.h"
-#include "VolumeProgram.h"
+#include "ProgramFeatures.h"
+#include "VolumeMesh.h"
 
 #include "../../core/sampling/View.h"
 

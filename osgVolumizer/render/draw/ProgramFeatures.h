@@ -36,6 +36,9 @@ struct ProgramFeatures
     int paintCount = 0;        ///< bricks of volumes that paint this one; no more than 4
     int planeCount = 0;        ///< half-spaces that end the segment, besides the clip box
 
+    /// Whether surfaces are sorted before the volume, whose shader reads them.
+    bool needsSortedSurfaces() const { return ranked || slotCount > 0; }
+
     /// Whether the rays' values are gathered in a target of their own, and drawn as one layer.
     bool gathers() const
     {

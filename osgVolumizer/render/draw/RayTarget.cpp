@@ -4,8 +4,8 @@
 #include "../context/ProgramInterface.h"
 #include "../context/ReportOnce.h"
 #include "../context/ScreenPass.h"
-#include "../context/TargetBuffers.h"
 #include "../context/Uniforms.h"
+#include "RayBuffers.h"
 #include "VolumeProgram.h"
 
 #include <osg/BlendEquation>
@@ -47,14 +47,15 @@ RayTarget::RayTarget(osg::State& state, ContextResources& resources,
         glGetIntegerv(names[i], &_function[i]);
 
     glGetBooleanv(GL_COLOR_WRITEMASK, _colorMask);
-    _made = ensureRays(_state, _resources.rays, std::max(_viewport.x + _viewport.z, 1),
-                       std::max(_viewport.y + _viewport.w, 1));
+    _made =
+        ensureRays(_state, _resources.part<RayBuffers>(), std::max(_viewport.x + _viewport.z, 1),
+                   std::max(_viewport.y + _viewport.w, 1));
     if (!_made) {
         reportOnce({ErrorCode::NOT_SUPPORTED, "the card has no memory for gathered values; volumes "
                                               "with such ray functions are not drawn"});
         return;
     }
-    _gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, _resources.rays.framebuffer);
+    _gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, _resources.part<RayBuffers>().framebuffer);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     const bool sums = _features.rayFunction == VolumeAppearance::AVERAGE ||
                       _features.rayFunction == VolumeAppearance::SUM;
@@ -82,14 +83,14 @@ void RayTarget::resolve(const VolumeLook& look)
     glDisable(GL_DEPTH_TEST); // rays ended at the opaque scene already
     glColorMask(_colorMask[0], _colorMask[1], _colorMask[2], _colorMask[3]);
     osg::ref_ptr<osg::Program>& resolving =
-        _resources.rays.programs[{_features.rayFunction, _features.rgba}];
+        _resources.part<RayBuffers>().programs[{_features.rayFunction, _features.rgba}];
     if (!resolving) resolving = makeResolveProgram(_features);
     _state.applyAttribute(resolving.get());
     const auto* program = _state.getLastAppliedProgramObject();
     if (!program) return;
     const Uniforms uniforms(_gl, *program);
     uniforms.set("rays", int(UNIT_RAYS));
-    _state.applyTextureAttribute(UNIT_RAYS, _resources.rays.color.get());
+    _state.applyTextureAttribute(UNIT_RAYS, _resources.part<RayBuffers>().color.get());
     if (!_features.rgba) {
         uniforms.set("lookupTable", int(UNIT_TABLE));
         uniforms.set("valueToEntry", look.valueToEntry);

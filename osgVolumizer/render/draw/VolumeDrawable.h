@@ -1,7 +1,7 @@
 #pragma once
 
-#include "VolumeLook.h"
 #include "VolumeMesh.h"
+#include "VolumePart.h"
 
 #include <osg/Drawable>
 
@@ -21,17 +21,17 @@ public:
     const char* libraryName() const override { return "osgVolumizer"; }
     const char* className() const override { return "VolumeDrawable"; }
 
-    void set(std::shared_ptr<const VolumeMesh> mesh, std::shared_ptr<const VolumeLook> look)
+    void set(std::shared_ptr<const VolumeMesh> mesh, std::shared_ptr<const VolumePart> part)
     {
         _mesh = std::move(mesh);
-        _look = std::move(look);
+        _part = std::move(part);
     }
     const VolumeMesh* mesh() const { return _mesh.get(); }
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
 
 private:
     std::shared_ptr<const VolumeMesh> _mesh;
-    std::shared_ptr<const VolumeLook> _look;
+    std::shared_ptr<const VolumePart> _part;
 };
 
 } // namespace render

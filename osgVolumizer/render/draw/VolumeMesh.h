@@ -20,12 +20,15 @@ struct BrickBatch
     unsigned firstIndex = 0, indexCount = 0;
 };
 
+/// A brick's, without triangles.
+BrickBatch batchOf(const SelectedBrick& brick);
+
 /// Triangles far to near, by brick. Immutable once made.
 struct VolumeMesh
 {
     int stride = 3; ///< floats a vertex
     int slabOffset = -1, voxelCoordinateOffset = -1, colorOffset = -1, colorSize = 0;
-    int spacingOffset = -1; ///< slices with a thickness each; else all have VolumeLook::step
+    int spacingOffset = -1; ///< slices with a thickness each; else all have VolumePart::step
     int positionOffset = 0;
     std::vector<float> vertices;
     std::vector<unsigned> indices;

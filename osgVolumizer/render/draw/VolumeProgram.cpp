@@ -120,7 +120,7 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->addUniform(new osg::Uniform(uniformName("voxels").c_str(), int(UNIT_VOXELS)));
     set->addUniform(new osg::Uniform(uniformName("lookupTable").c_str(), int(UNIT_TABLE)));
     set->addUniform(new osg::Uniform(uniformName("opaqueDepth").c_str(), int(UNIT_OPAQUE_DEPTH)));
-    set->addUniform(new osg::Uniform(uniformName("layerDepth").c_str(), int(UNIT_LAYER_DEPTH)));
+    set->addUniform(new osg::Uniform(uniformName("layerDepth").c_str(), int(UNIT_SPLIT_DEPTH)));
     set->addUniform(new osg::Uniform(uniformName("sortedSlots").c_str(), int(UNIT_SORTED_FAR)));
     set->addUniform(new osg::Uniform(uniformName("slotColors").c_str(), int(UNIT_SORTED_NEAR)));
     set->addUniform(new osg::Uniform(uniformName("sortedFar").c_str(), int(UNIT_SORTED_FAR)));

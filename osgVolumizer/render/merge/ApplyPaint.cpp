@@ -68,24 +68,23 @@ void applyPaint(std::vector<VolumeInstance*>& volumes)
         VolumeInstance& volume = **painted;
         if (volume.look->features.gathers()) continue;
         const BoxInView view = viewOf(volume);
-        auto look = std::make_shared<VolumeLook>(*volume.look);
+        auto all = std::make_shared<std::vector<Paint>>();
         for (auto p = firstPaint; p != volumes.end(); ++p) {
             if (!overlaps(viewOf(**p), view)) continue;
             const glm::dmat4 fromFrame =
                 glm::inverse(toGlm(*(*p)->frameToEye)) * toGlm(*volume.frameToEye);
             for (Paint& paint : paintsOf(**p)) {
                 paint.fromFrame = fromFrame;
-                look->paints.push_back(std::move(paint));
+                all->push_back(std::move(paint));
             }
         }
-        if (look->paints.size() > std::size_t(Paint::MAXIMUM_COUNT)) {
-            refuse(volume, "it overlaps " + std::to_string(look->paints.size()) +
+        if (all->size() > std::size_t(Paint::MAXIMUM_COUNT)) {
+            refuse(volume, "it overlaps " + std::to_string(all->size()) +
                                " bricks of volumes that paint it; it shows only " +
                                std::to_string(Paint::MAXIMUM_COUNT));
-            look->paints.resize(Paint::MAXIMUM_COUNT);
+            all->resize(Paint::MAXIMUM_COUNT);
         }
-        look->features.paintCount = static_cast<int>(look->paints.size());
-        volume.look = std::move(look);
+        if (!all->empty()) volume.paints = std::move(all);
     }
     volumes.erase(firstPaint, volumes.end());
 }

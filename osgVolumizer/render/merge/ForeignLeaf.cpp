@@ -142,7 +142,7 @@ osgUtil::RenderLeaf* ForeignLeaf::copy(osg::StateSet& state) const
     return leaf.get();
 }
 
-osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, bool layer,
+osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, bool depthOnly,
                                         osg::Drawable* drawable) const
 {
     const osg::Matrixd p = usualProjection(*_leaf);
@@ -160,7 +160,7 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
 
     const osg::Depth* depth = effectiveDepth(_leaf->_parent);
     // Segments are split at true depths, whatever range the leaf draws to.
-    const bool ownRange = depth && !layer;
+    const bool ownRange = depth && !depthOnly;
     const double rangeNear = ownRange ? depth->getZNear() : 0.0;
     const double rangeFar = ownRange ? depth->getZFar() : 1.0;
     const auto window = [&](double z) {
@@ -169,12 +169,12 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
     const unsigned force =
         StateAttribute::ON | StateAttribute::OVERRIDE | StateAttribute::PROTECTED;
-    const osg::Depth::Function function = layer   ? osg::Depth::LESS
-                                          : depth ? depth->getFunction()
-                                                  : osg::Depth::LESS;
+    const osg::Depth::Function function = depthOnly ? osg::Depth::LESS
+                                          : depth   ? depth->getFunction()
+                                                    : osg::Depth::LESS;
     osg::ref_ptr<osg::Depth> own = new osg::Depth(function, window(zNear), window(zFar),
-                                                  layer || !depth || depth->getWriteMask());
-    if (layer) {
+                                                  depthOnly || !depth || depth->getWriteMask());
+    if (depthOnly) {
         set->setAttributeAndModes(own, force);
         set->setAttribute(new osg::ColorMask(false, false, false, false), force);
     } else {

@@ -75,9 +75,9 @@ public:
     /// A copy of the leaf that draws only what lies between two depths: the planes become those of
     /// its projection, and the window depths of these planes its depth range. Window z is affine in
     /// 1/z, so every fragment keeps its depth exactly, whatever the shader. An infinite end is left
-    /// as it was. \param layer into the layer buffer: nearest depth, no colour \param drawable
-    /// draws the part of the leaf's drawable that matters; null: all of it
-    osgUtil::RenderLeaf* piece(const core::DepthInterval& interval, bool layer,
+    /// as it was. \param depthOnly no colour, and the nearest depth, whatever the leaf's own test
+    /// \param drawable draws the part of the leaf's drawable that matters; null: all of it
+    osgUtil::RenderLeaf* piece(const core::DepthInterval& interval, bool depthOnly,
                                osg::Drawable* drawable = nullptr) const;
 
     /// A copy of the whole leaf with a state of the caller's on top.

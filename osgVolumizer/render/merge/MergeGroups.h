@@ -1,11 +1,21 @@
 #pragma once
 
-#include "GroupComposer.h"
+#include "../volume/VolumeInstance.h"
+#include "ForeignLeaf.h"
 
 #include <list>
+#include <vector>
 
 namespace osgVolumizer {
 namespace render {
+
+/// Volumes and translucent leaves that overlap in depth and on the screen, directly or through each
+/// other.
+struct MergeGroup
+{
+    std::vector<VolumeInstance*> volumes;
+    std::vector<const ForeignLeaf*> surfaces;
+};
 
 /// The groups of a bin. Every volume is in one; surfaces only where they overlap one.
 struct MergeGroups

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "GroupComposer.h"
+#include "../draw/Accumulation.h"
+#include "../volume/VolumeInstance.h"
+#include "FrameCounts.h"
 
 #include <osg/Camera>
 #include <osg/FrameStamp>
@@ -35,15 +37,12 @@ public:
     void sortImplementation(osgUtil::RenderBin* bin) override;
 
 private:
-    using LeafList = osgUtil::RenderBin::RenderLeafList;
+    using BinLeaves = osgUtil::RenderBin::RenderLeafList;
 
     std::vector<VolumeInstance*> visibleVolumes(const std::vector<osgUtil::RenderBin*>& bins) const;
     glm::ivec4 viewport() const;
-    void merge(const osgUtil::RenderBin& bin, LeafList& leaves,
+    void merge(const osgUtil::RenderBin& bin, BinLeaves& leaves,
                const std::vector<VolumeInstance*>& visible, FrameCounts& counts);
-    void leaveOut(const osgUtil::RenderBin& bin, const LeafList& leaves,
-                  const std::vector<VolumeInstance*>& visible, const core::DepthInterval& ends,
-                  Accumulation& accumulation) const;
     osg::ref_ptr<Accumulation> makeAccumulation() const;
     void report(const FrameCounts& counts) const;
 

@@ -167,7 +167,7 @@ std::unique_ptr<SurfaceMesh> SurfaceMesh::of(const ForeignLeaf& foreign)
     return mesh;
 }
 
-double SurfaceMesh::layerEstimate() const
+double SurfaceMesh::coverEstimate() const
 {
     constexpr int CELLS = 12;
     const glm::dvec2 size = glm::max(_view.screen.max - _view.screen.min, glm::dvec2(1e-12));

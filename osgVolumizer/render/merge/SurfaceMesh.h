@@ -40,7 +40,7 @@ public:
 
     /// How many of its triangles lie over each other on the screen, at most: an estimate from areas
     /// in a coarse grid; good for closed surfaces of many triangles.
-    double layerEstimate() const;
+    double coverEstimate() const;
 
     /// Whether any triangle reaches into an outline. What does not cannot show in the volume, nor
     /// the volume in it.

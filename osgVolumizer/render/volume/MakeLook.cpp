@@ -246,8 +246,8 @@ bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry
     return false;
 }
 
-std::shared_ptr<VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table,
-                                     osgUtil::CullVisitor& visitor)
+std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table,
+                                           osgUtil::CullVisitor& visitor)
 {
     const VolumeAppearance& appearance = *volume.appearance;
     const PreparedGeometry& prepared = *volume.prepared;

@@ -23,6 +23,8 @@ struct VolumeInstance
     osg::ref_ptr<const VolumeAppearance> appearance;
     std::shared_ptr<const PreparedGeometry> prepared;
     std::shared_ptr<const VolumeLook> look;
+    StateAbove above;
+    bool skipping = false;                   ///< leap over cells that show nothing
     osg::ref_ptr<osg::RefMatrix> frameToEye; ///< model-view of the leaf
     osg::ref_ptr<VolumeDrawable> drawable; ///< of the leaf that stands for the volume until sorting
     std::vector<SelectedBrick> bricks;
@@ -34,11 +36,20 @@ struct VolumeInstance
     std::uint64_t viewId = 0; ///< see viewIdOf()
 
     // Known once sorting begins:
+    std::shared_ptr<const std::vector<EyeLight>> lights; ///< null where unlit
+    std::shared_ptr<const std::vector<Paint>> paints;    ///< null for none
     osgUtil::RenderLeaf* leaf = nullptr;
     core::DepthInterval depth; ///< of the selected bricks, in front of the near plane
     /// The same of all the volume: where its samples are counted from, whatever is left out.
     core::DepthInterval wholeDepth;
 };
+
+/// Once near and far are final: finds the depths of the volume that a leaf stands for, and puts its
+/// bricks in visibility order, far to near. False where nothing of it lies between near and far.
+bool placeInView(VolumeInstance& volume, osgUtil::RenderLeaf& leaf);
+
+/// All of a volume, everywhere, with what is known of it so far.
+VolumePart partOf(const VolumeInstance& volume);
 
 } // namespace render
 } // namespace osgVolumizer

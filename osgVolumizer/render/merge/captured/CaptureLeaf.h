@@ -1,6 +1,7 @@
 #pragma once
 
-#include "../draw/Accumulation.h"
+#include "../../draw/Accumulation.h"
+#include "CaptureBuffers.h"
 
 #include <osg/Drawable>
 #include <osg/StateSet>
@@ -54,7 +55,9 @@ public:
     static osg::ref_ptr<osg::StateSet> stateSet(const Settings& settings);
 
 private:
+    CaptureBuffers* buffersIn(osg::State& state) const;
     void drawWithout(osg::State& state) const;
+    void draw(osg::State& state, const CaptureBuffers& buffers) const;
 
     osg::ref_ptr<Accumulation> _accumulation;
     Settings _settings;
@@ -64,8 +67,6 @@ private:
 osg::ref_ptr<osg::StateSet> captureState(int fragment);
 /// How fragments from number `fragments` on are drawn to the target.
 osg::ref_ptr<osg::StateSet> captureRestState(int fragments);
-/// Most slots that buffers of a size should have.
-int affordableSlots(int width, int height);
 
 } // namespace render
 } // namespace osgVolumizer

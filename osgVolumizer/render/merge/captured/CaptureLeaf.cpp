@@ -1,13 +1,13 @@
 #include "CaptureLeaf.h"
 
-#include "../context/ContextRefusals.h"
-#include "../context/ForeignState.h"
-#include "../context/ProgramInterface.h"
-#include "../context/ReportOnce.h"
-#include "../context/ScreenPass.h"
-#include "../context/SharedStateSets.h"
-#include "../context/Uniforms.h"
-#include "../draw/VolumeProgram.h"
+#include "../../context/ContextRefusals.h"
+#include "../../context/ForeignState.h"
+#include "../../context/ProgramInterface.h"
+#include "../../context/ReportOnce.h"
+#include "../../context/ScreenPass.h"
+#include "../../context/SharedStateSets.h"
+#include "../../context/Uniforms.h"
+#include "../../draw/VolumeProgram.h"
 
 #include <osg/Depth>
 #include <osg/Stencil>
@@ -19,8 +19,6 @@ namespace osgVolumizer {
 namespace render {
 
 namespace {
-
-constexpr std::size_t MEMORY_BUDGET = std::size_t(512) << 20, BYTES_PER_SLOT = 20 + 5;
 
 // Comparators of a sorting network for n elements (Batcher; Knuth, TAOCP 3, algorithm 5.2.2 M).
 std::string sortingNetwork(int n)
@@ -46,7 +44,7 @@ std::string sortCode(int slots)
 {
     std::string code =
         "#define SLOTS " + std::to_string(slots) + "\nlayout(location = 0) out vec4 sorted[" +
-        std::to_string(sortedLayers(slots)) +
+        std::to_string(sortedTextures(slots)) +
         "];\n"
         "void order(inout float d0, inout float d1, inout float id0, inout float id1)\n{\n"
         "    // Of equal depths the later is nearer.\n"
@@ -75,7 +73,7 @@ std::string sortCode(int slots)
 
 osg::ref_ptr<osg::StateSet> withUnits(osg::ref_ptr<osg::StateSet> set)
 {
-    set->addUniform(new osg::Uniform(uniformName("slotDepths").c_str(), int(UNIT_FIRST_LAYER)));
+    set->addUniform(new osg::Uniform(uniformName("slotDepths").c_str(), int(UNIT_FIRST_CAPTURED)));
     set->addUniform(new osg::Uniform(uniformName("opaqueDepth").c_str(), int(UNIT_OPAQUE_DEPTH)));
     set->addUniform(new osg::Uniform(uniformName("sortedSlots").c_str(), int(UNIT_SORTED_FAR)));
     return set;
@@ -87,13 +85,6 @@ std::uint64_t key(SharedState first, int number)
 }
 
 } // namespace
-
-int affordableSlots(int width, int height)
-{
-    const std::size_t pixels = std::size_t(std::max(width, 1)) * std::size_t(std::max(height, 1));
-    const std::size_t slots = MEMORY_BUDGET / (pixels * BYTES_PER_SLOT);
-    return static_cast<int>(std::min(slots, std::size_t(CaptureLeaf::MAXIMUM_SLOTS))) / 4 * 4;
-}
 
 CaptureLeaf::CaptureLeaf(Accumulation* accumulation, const Settings& settings)
     : _accumulation(accumulation), _settings(settings)
@@ -141,6 +132,7 @@ void CaptureLeaf::drawWithout(osg::State& state) const
                 "the card has no memory for captured surfaces; those in volumes are sorted rank "
                 "by rank, which takes longer"});
     refuse(state.getContextID(), Refusal::CAPTURED_SURFACES);
+    contextResources(state)->part<AccumulationBuffers>().sortedSurfaces[0] = nullptr;
     const bool begins = _settings.step == BEGIN_SLOT ||
                         (_settings.step == BEGIN_REST && !_accumulation->hasPlainTarget());
     if (begins)
@@ -149,18 +141,37 @@ void CaptureLeaf::drawWithout(osg::State& state) const
         glDisable(GL_RASTERIZER_DISCARD);
 }
 
+CaptureBuffers* CaptureLeaf::buffersIn(osg::State& state) const
+{
+    ContextResources& resources = *contextResources(state);
+    CaptureBuffers& buffers = resources.part<CaptureBuffers>();
+    const bool made =
+        _accumulation->hasTarget() &&
+        ensureCapture(state, resources.part<AccumulationBuffers>(), buffers, _settings.slotCount);
+    _accumulation->bindTarget(state);
+    return made ? &buffers : nullptr;
+}
+
 void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     if (!_accumulation) return;
     osg::State& state = *renderInfo.getState();
-    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    const std::shared_ptr<ContextResources> resources = contextResources(state);
-    CaptureBuffers* made = _accumulation->captureBuffers(state, _settings.slotCount);
-    if (!made) {
+    const CaptureBuffers* buffers = buffersIn(state);
+    if (!buffers) {
         drawWithout(state);
         return;
     }
-    const CaptureBuffers& buffers = *made;
+    draw(state, *buffers);
+    reapplyInNextFrame(state);
+    for (unsigned unit = UNIT_OPAQUE_DEPTH; unit <= UNIT_FIRST_CAPTURED; ++unit)
+        state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+}
+
+void CaptureLeaf::draw(osg::State& state, const CaptureBuffers& buffers) const
+{
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    ContextResources& resources = *contextResources(state);
+    AccumulationBuffers& target = resources.part<AccumulationBuffers>();
     const int slot = _settings.slot;
     switch (_settings.step) {
     case BEGIN_SLOT:
@@ -176,30 +187,29 @@ void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
         break;
     case SORT:
         bindFramebuffer(state, buffers.sortedFramebuffer);
-        state.applyTextureAttribute(UNIT_FIRST_LAYER, buffers.depths);
-        state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, resources->accumulation.opaqueDepth);
-        drawScreen(state, *resources, _settings.area);
+        state.applyTextureAttribute(UNIT_FIRST_CAPTURED, buffers.depths);
+        state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, target.opaqueDepth);
+        drawScreen(state, resources, _settings.area);
+        target.sortedSurfaces[0] = buffers.sorted;
+        target.sortedSurfaces[1] = buffers.colors;
         _accumulation->bindTarget(state);
         break;
     case WRITE_DEPTH:
         state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.sorted);
-        drawScreen(state, *resources, _settings.area);
+        drawScreen(state, resources, _settings.area);
         break;
     case BEGIN_REST:
         gl.glBeginConditionalRender(buffers.queries[slot], WAIT_FOR_QUERY);
         bindFramebuffer(state, buffers.restFramebuffer);
         clearArea(_settings.area, GL_STENCIL_BUFFER_BIT);
-        state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, resources->accumulation.opaqueDepth);
-        drawScreen(state, *resources, _settings.area);
+        state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, target.opaqueDepth);
+        drawScreen(state, resources, _settings.area);
         break;
     case END_REST:
         gl.glEndConditionalRender();
         _accumulation->bindTarget(state);
         break;
     }
-    reapplyInNextFrame(state);
-    for (unsigned unit = UNIT_OPAQUE_DEPTH; unit <= UNIT_FIRST_LAYER; ++unit)
-        state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }
 
 osg::ref_ptr<osg::StateSet> captureState(int fragment)

@@ -4,16 +4,16 @@
 layout(location = 0) out vec4 sortedFar;
 layout(location = 1) out vec4 sortedNear;
 
-uniform sampler2D layer0, layer1, layer2, layer3, layer4, layer5, layer6, layer7;
+uniform sampler2D depths0, depths1, depths2, depths3, depths4, depths5, depths6, depths7;
 uniform sampler2D opaqueDepth;
 
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float d[8] = float[8](texelFetch(layer0, pixel, 0).r, texelFetch(layer1, pixel, 0).r,
-                          texelFetch(layer2, pixel, 0).r, texelFetch(layer3, pixel, 0).r,
-                          texelFetch(layer4, pixel, 0).r, texelFetch(layer5, pixel, 0).r,
-                          texelFetch(layer6, pixel, 0).r, texelFetch(layer7, pixel, 0).r);
+    float d[8] = float[8](texelFetch(depths0, pixel, 0).r, texelFetch(depths1, pixel, 0).r,
+                          texelFetch(depths2, pixel, 0).r, texelFetch(depths3, pixel, 0).r,
+                          texelFetch(depths4, pixel, 0).r, texelFetch(depths5, pixel, 0).r,
+                          texelFetch(depths6, pixel, 0).r, texelFetch(depths7, pixel, 0).r);
     float end = texelFetch(opaqueDepth, pixel, 0).r;
     for (int i = 0; i < 8; ++i) {
         bool drop = d[i] >= end;

@@ -1,0 +1,135 @@
+#include "VolumeUniforms.h"
+
+#include "../context/ProgramInterface.h"
+
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+
+#include <cmath>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+void setTable(const Uniforms& uniforms, const VolumeLook& look)
+{
+    uniforms.set("valueToEntry", look.valueToEntry);
+    uniforms.set("lastEntry", static_cast<float>(look.table.count - 1));
+    if (!look.features.preIntegrated) return;
+    uniforms.set("tableLow", look.table.low);
+    uniforms.set("tableHigh", look.table.high);
+}
+
+// Normals are to be seen in the eye frame, and their length in ranges per opacity unit.
+glm::dmat3 gradientToEye(const VolumeLook& look, const glm::dmat3& frameToEye)
+{
+    const double unitsToEye =
+        std::cbrt(std::abs(glm::determinant(frameToEye) / glm::determinant(look.frameToUnits)));
+    return glm::inverse(glm::transpose(frameToEye)) * (unitsToEye * look.texelToFraction);
+}
+
+void setLights(const Uniforms& uniforms, const std::vector<EyeLight>& lights)
+{
+    std::vector<glm::vec4> positions, spots;
+    std::vector<glm::vec3> ambients, diffuses, speculars, attenuations;
+    std::vector<float> exponents;
+    for (const EyeLight& light : lights) {
+        positions.push_back(light.position);
+        spots.push_back(light.spot);
+        ambients.push_back(light.ambient);
+        diffuses.push_back(light.diffuse);
+        speculars.push_back(light.specular);
+        attenuations.push_back(light.attenuation);
+        exponents.push_back(light.spotExponent);
+    }
+    uniforms.set("lightCount", static_cast<int>(lights.size()));
+    uniforms.set("lightPosition", positions);
+    uniforms.set("lightSpot", spots);
+    uniforms.set("lightAmbient", ambients);
+    uniforms.set("lightDiffuse", diffuses);
+    uniforms.set("lightSpecular", speculars);
+    uniforms.set("lightAttenuation", attenuations);
+    uniforms.set("lightSpotExponent", exponents);
+}
+
+void setShading(const Uniforms& uniforms, const VolumePart& part, const PixelRays& rays,
+                const glm::dmat4& frameToEye, const osg::State& state)
+{
+    const VolumeLook& look = *part.look;
+    setLights(uniforms, enabledLights(part.lights ? *part.lights : std::vector<EyeLight>(), state));
+    uniforms.set("material", look.material);
+    uniforms.set("gradientToEye", gradientToEye(look, glm::dmat3(frameToEye)));
+    uniforms.set("gradientDecode", look.gradientDecode);
+    uniforms.set("rayOriginEye", rays.originEye);
+    uniforms.set("rayDirectionEye", rays.directionEye);
+    if (!look.features.slab) uniforms.set("frameToEye", frameToEye);
+}
+
+void setSegment(const Uniforms& uniforms, const VolumePart& part)
+{
+    const VolumeLook& look = *part.look;
+    uniforms.set("stepsPerDepth", static_cast<float>(1.0 / part.step));
+    uniforms.set("maximumSteps", static_cast<float>(look.maximumSteps));
+    if (part.features.layerDepth) uniforms.set("inFrontOfLayer", part.inFrontOfSplit ? 1 : 0);
+    if (part.features.ranked) uniforms.set("rank", part.rank);
+    uniforms.set("regionMin", look.regionMin);
+    uniforms.set("regionMax", look.regionMax);
+    uniforms.set("planes", look.planes);
+    uniforms.set("isoTexel", look.isoTexel);
+}
+
+// For the shader of slabs; a volume whose range is one depth lies just before that.
+glm::vec2 depthRange(const DepthTest& test)
+{
+    if (test.zNear == test.zFar) return {static_cast<float>(test.zNear) - 1e-7f, 1e30f};
+    return glm::vec2(test.zNear, 1.0 / (test.zFar - test.zNear));
+}
+
+void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRays& rays,
+                      const VolumePart& part, const AccumulationBuffers& buffers)
+{
+    const DepthTest& test = part.above.depthTest;
+    const bool ends = buffers.hasOpaqueDepth && test.function != osg::Depth::ALWAYS &&
+                      test.function != osg::Depth::NOTEQUAL;
+    uniforms.set("opaqueRule", !ends ? 0 : test.nearerPasses() ? 1 : 2);
+    uniforms.set("depthRange", depthRange(test));
+    if (!buffers.opaqueDepth) return;
+    state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
+    if (part.features.layerDepth)
+        state.applyTextureAttribute(UNIT_SPLIT_DEPTH, buffers.splitDepth.get());
+    if (part.features.needsSortedSurfaces() && buffers.sortedSurfaces[0]) {
+        state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.sortedSurfaces[0].get());
+        state.applyTextureAttribute(UNIT_SORTED_NEAR, buffers.sortedSurfaces[1].get());
+        uniforms.set("surfaceWeights", part.surfaceWeights);
+    }
+    uniforms.set("clipZOrigin", glm::vec3(rays.clipZOrigin));
+    uniforms.set("clipZDirection", glm::vec3(rays.clipZDirection));
+    uniforms.set("clipWOrigin", glm::vec3(rays.clipWOrigin));
+    uniforms.set("clipWDirection", glm::vec3(rays.clipWDirection));
+}
+
+} // namespace
+
+void setUniforms(osg::State& state, const Uniforms& uniforms, const VolumePart& part,
+                 const PixelRays& rays, const glm::dmat4& frameToEye,
+                 const AccumulationBuffers& buffers)
+{
+    const VolumeLook& look = *part.look;
+    uniforms.set("windowCenter", glm::vec2(rays.windowCenter));
+    uniforms.set("rayOrigin", rays.origin);
+    uniforms.set("rayDirection", rays.direction);
+    uniforms.set("frameToUnits", look.frameToUnits);
+    if (look.table.texture) setTable(uniforms, look);
+    if (part.features.slab) {
+        setSegment(uniforms, part);
+    } else {
+        uniforms.set("surfaceNormal", glm::vec3(part.surfaceNormal));
+        if (part.features.spherical) uniforms.set("rayDirectionEye", rays.directionEye);
+    }
+    if (part.features.shading) setShading(uniforms, part, rays, frameToEye, state);
+    if (part.features.opaqueDepth) setDepthTextures(state, uniforms, rays, part, buffers);
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "../context/Uniforms.h"
+#include "AccumulationBuffers.h"
+#include "PixelRays.h"
+#include "VolumePart.h"
+
+#include <osg/State>
+
+namespace osgVolumizer {
+namespace render {
+
+/// Gives the program in force all that it needs of a part but its voxels, table and paints: values,
+/// lights and the depths that segments end at. Call in the draw thread.
+void setUniforms(osg::State& state, const Uniforms& uniforms, const VolumePart& part,
+                 const PixelRays& rays, const glm::dmat4& frameToEye,
+                 const AccumulationBuffers& buffers);
+
+} // namespace render
+} // namespace osgVolumizer
