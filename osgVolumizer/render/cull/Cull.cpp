@@ -121,6 +121,45 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
     return table;
 }
 
+// All that is known before bricks are selected; null where there is nothing to draw.
+std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
+                                             const VolumeAppearance& appearance,
+                                             osgUtil::CullVisitor& visitor)
+{
+    const Voxels* voxels = appearance.getVoxels();
+    if (voxels && !voxels->valid()) return nullptr;
+    auto volume = std::make_unique<VolumeInstance>();
+    volume->geometry = &geometry;
+    volume->appearance = &appearance;
+    volume->prepared = geometry.geometryCache().get(geometry, voxels);
+    if (!volume->prepared) return nullptr;
+    if (!voxels && volume->prepared->tetras.vertices.format().colorSize == 0) return nullptr;
+    volume->sampling = appearance.getSamplingParameters();
+    volume->sampling.maximumSamples = std::min(volume->sampling.maximumSamples, MOST_SAMPLES);
+    volume->viewId = viewIdOf(visitor);
+    if (voxels && !volume->prepared->voxelFrame) {
+        const osg::Vec3d s = voxels->getSpacing();
+        volume->sampling.voxelSize = {s.x(), s.y(), s.z()};
+    }
+    volume->frameToEye = new osg::RefMatrix(
+        toOsg(toGlm(*visitor.getModelViewMatrix()) * volume->prepared->frameToObject));
+    TableTexture table;
+    if (voxels) table = chooseSampling(*volume, visitor);
+    volume->look = makeLook(*volume, table, visitor);
+    return volume;
+}
+
+// False where no brick shows anything.
+bool select(VolumeInstance& volume, osgUtil::CullVisitor& visitor)
+{
+    const Voxels* voxels = volume.appearance->getVoxels();
+    if (!voxels) return true;
+    selectBricks(volume, *voxels, visitor);
+    volume.skipping = isWorthSkipping(volume);
+    report(volume, *voxels, visitor);
+    return !volume.bricks.empty();
+}
+
 } // namespace
 
 void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
@@ -133,41 +172,16 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     }
     const VolumeAppearance* appearance = nearestAppearance(visitor.getNodePath());
     if (!appearance) return;
-    const Voxels* voxels = appearance->getVoxels();
-    if (voxels && !voxels->valid()) return;
-    auto volume = std::make_unique<VolumeInstance>();
-    volume->geometry = &geometry;
-    volume->appearance = appearance;
-    volume->prepared = geometry.geometryCache().get(geometry, voxels);
-    if (!volume->prepared) return;
-    if (!voxels && volume->prepared->tetras.vertices.format().colorSize == 0) return;
-    volume->sampling = appearance->getSamplingParameters();
-    volume->sampling.maximumSamples = std::min(volume->sampling.maximumSamples, MOST_SAMPLES);
-    volume->viewId = viewIdOf(visitor);
-    if (voxels && !volume->prepared->voxelFrame) {
-        const osg::Vec3d s = voxels->getSpacing();
-        volume->sampling.voxelSize = {s.x(), s.y(), s.z()};
-    }
-    osg::RefMatrix& objectToEye = *visitor.getModelViewMatrix();
-    volume->frameToEye =
-        new osg::RefMatrix(toOsg(toGlm(objectToEye) * volume->prepared->frameToObject));
-    TableTexture table;
-    if (voxels) table = chooseSampling(*volume, visitor);
-    volume->look = makeLook(*volume, table, visitor);
-    if (voxels) {
-        selectBricks(*volume, *voxels, visitor);
-        volume->skipping = isWorthSkipping(*volume);
-        report(*volume, *voxels, visitor);
-        if (volume->bricks.empty()) return;
-    }
+    std::unique_ptr<VolumeInstance> volume = makeInstance(geometry, *appearance, visitor);
+    if (!volume || !select(*volume, visitor)) return;
     if (visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR &&
-        !visitor.updateCalculatedNearFar(objectToEye, geometry.getBoundingBox()))
+        !visitor.updateCalculatedNearFar(*visitor.getModelViewMatrix(), geometry.getBoundingBox()))
         return;
-
-    if (osg::StateSet* own = geometry.getStateSet()) visitor.pushStateSet(own);
+    osg::StateSet* own = geometry.getStateSet();
+    if (own) visitor.pushStateSet(own);
     volume->above = stateAbove(visitor.getCurrentStateGraph());
     registerVolume(std::move(volume), visitor);
-    if (geometry.getStateSet()) visitor.popStateSet();
+    if (own) visitor.popStateSet();
 }
 
 } // namespace render

@@ -44,6 +44,16 @@ double deviceZ(const osg::Matrixd& p, double depth)
     return z / w;
 }
 
+// A projection whose near and far plane are where device z is zNear and zFar.
+osg::Matrixd cutProjection(const osg::Matrixd& p, double zNear, double zFar)
+{
+    const double scale = 2.0 / (zFar - zNear), offset = -(zFar + zNear) / (zFar - zNear);
+    osg::Matrixd cut = p;
+    for (int row = 0; row < 4; ++row)
+        cut(row, 2) = scale * p(row, 2) + offset * p(row, 3);
+    return cut;
+}
+
 } // namespace
 
 bool keepsState(const osg::Drawable& drawable)
@@ -151,12 +161,9 @@ osgUtil::RenderLeaf* ForeignLeaf::piece(const core::DepthInterval& interval, boo
     const double zFar =
         std::isfinite(interval.farDepth) ? std::min(1.0, deviceZ(p, interval.farDepth)) : 1.0;
     if (!(zNear < zFar)) return nullptr;
-    const double scale = 2.0 / (zFar - zNear), offset = -(zFar + zNear) / (zFar - zNear);
-    osg::Matrixd cut = p;
-    for (int row = 0; row < 4; ++row)
-        cut(row, 2) = scale * p(row, 2) + offset * p(row, 3);
     const glm::dmat4 fromUsual = glm::inverse(toUsualClip(_leaf->_parent));
-    osg::ref_ptr<osg::RefMatrix> projection = new osg::RefMatrix(toOsg(fromUsual * toGlm(cut)));
+    osg::ref_ptr<osg::RefMatrix> projection =
+        new osg::RefMatrix(toOsg(fromUsual * toGlm(cutProjection(p, zNear, zFar))));
 
     const osg::Depth* depth = effectiveDepth(_leaf->_parent);
     // Segments are split at true depths, whatever range the leaf draws to.

@@ -31,6 +31,29 @@ private:
     std::vector<std::size_t> _parent;
 };
 
+// Volumes that overlap each other.
+void joinOverlapping(const std::vector<BoxInView>& views, DisjointSets& sets)
+{
+    for (std::size_t a = 0; a < views.size(); ++a)
+        for (std::size_t b = a + 1; b < views.size(); ++b)
+            if (overlaps(views[a], views[b])) sets.join(a, b);
+}
+
+// Joins the volumes that a surface overlaps, and returns one of them; their number for none.
+std::size_t joinThrough(const BoxInView& surface, const std::vector<BoxInView>& views,
+                        DisjointSets& sets)
+{
+    std::size_t first = views.size();
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        if (!overlaps(views[v], surface)) continue;
+        if (first == views.size())
+            first = v;
+        else
+            sets.join(first, v);
+    }
+    return first;
+}
+
 } // namespace
 
 bool overlaps(const BoxInView& a, const BoxInView& b)
@@ -52,47 +75,35 @@ MergeGroups findMergeGroups(const std::vector<VolumeInstance*>& volumes,
 {
     MergeGroups result;
     if (volumes.empty()) return result;
-    const std::size_t n = volumes.size();
     std::vector<BoxInView> views;
     std::unordered_set<const osgUtil::RenderLeaf*> own;
     for (const VolumeInstance* volume : volumes) {
         views.push_back(viewOf(*volume));
         own.insert(volume->leaf);
     }
-    DisjointSets sets(n);
-    for (std::size_t a = 0; a < n; ++a)
-        for (std::size_t b = a + 1; b < n; ++b)
-            if (overlaps(views[a], views[b])) sets.join(a, b);
-
+    DisjointSets sets(volumes.size());
+    joinOverlapping(views, sets);
     std::vector<std::size_t> anyVolumeOf; // per surface
     const osg::Matrixd projection = usualProjection(*volumes.front()->leaf);
     for (osgUtil::RenderLeaf* leaf : leaves) {
         if (own.count(leaf)) continue;
         const auto surface = ForeignLeaf::examine(*leaf, projection);
         if (!surface) continue;
-        std::size_t first = n;
-        for (std::size_t v = 0; v < n; ++v) {
-            if (!overlaps(views[v], surface->view())) continue;
-            if (first == n)
-                first = v;
-            else
-                sets.join(first, v);
-        }
-        if (first == n) continue;
+        const std::size_t volume = joinThrough(surface->view(), views, sets);
+        if (volume == views.size()) continue;
         result.surfaces.push_back(*surface);
-        anyVolumeOf.push_back(first);
+        anyVolumeOf.push_back(volume);
     }
-
-    std::vector<std::size_t> groupOfRoot(n, n);
+    std::vector<std::size_t> groupOfRoot(volumes.size(), volumes.size());
     const auto groupOf = [&](std::size_t volume) -> MergeGroup& {
         std::size_t& group = groupOfRoot[sets.root(volume)];
-        if (group == n) {
+        if (group == volumes.size()) {
             group = result.groups.size();
             result.groups.emplace_back();
         }
         return result.groups[group];
     };
-    for (std::size_t v = 0; v < n; ++v)
+    for (std::size_t v = 0; v < volumes.size(); ++v)
         groupOf(v).volumes.push_back(volumes[v]);
     std::size_t s = 0;
     for (const ForeignLeaf& surface : result.surfaces)

@@ -2,7 +2,7 @@
 
 #include "../context/LeafState.h"
 
-#include "../context/ContextResources.h"
+#include "TrianglesOfGeometry.h"
 
 #include <osg/Program>
 #include <osg/TriangleIndexFunctor>
@@ -73,48 +73,6 @@ struct CollectTriangles
     }
 };
 
-// Draws triangles of a geometry by our own indices, with all of its arrays.
-class TrianglesOfGeometry : public osg::Drawable
-{
-public:
-    TrianglesOfGeometry(const osg::Geometry* geometry, SurfaceMesh::Indices indices)
-        : _geometry(geometry), _indices(std::move(indices))
-    {
-        setSupportsDisplayList(false);
-        setUseDisplayList(false);
-        setUseVertexBufferObjects(geometry && geometry->getUseVertexBufferObjects());
-        setDataVariance(osg::Object::STATIC);
-        if (geometry && geometry->getDataVariance() == osg::Object::DYNAMIC)
-            setDataVariance(osg::Object::DYNAMIC);
-    }
-    osg::Object* cloneType() const override { return new TrianglesOfGeometry(nullptr, nullptr); }
-    osg::Object* clone(const osg::CopyOp&) const override { return cloneType(); }
-    const char* libraryName() const override { return "osgVolumizer"; }
-    const char* className() const override { return "TrianglesOfGeometry"; }
-
-    void drawImplementation(osg::RenderInfo& renderInfo) const override
-    {
-        osg::State& state = *renderInfo.getState();
-        const bool buffers =
-            state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
-        osg::VertexArrayState* arrays = state.getCurrentVertexArrayState();
-        arrays->setVertexBufferObjectSupported(buffers);
-        _geometry->drawVertexArraysImplementation(renderInfo);
-        osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-        contextResources(state)->indices.stream(gl, GL_ELEMENT_ARRAY_BUFFER_ARB, _indices->data(),
-                                                _indices->size() * sizeof(unsigned));
-        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(_indices->size()), GL_UNSIGNED_INT,
-                       nullptr);
-        gl.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER_ARB, 0);
-        arrays->unbindElementBufferObject();
-        if (buffers) arrays->unbindVertexBufferObject();
-    }
-
-private:
-    osg::ref_ptr<const osg::Geometry> _geometry;
-    SurfaceMesh::Indices _indices;
-};
-
 } // namespace
 
 std::unique_ptr<SurfaceMesh> SurfaceMesh::of(const ForeignLeaf& foreign)
@@ -134,28 +92,8 @@ std::unique_ptr<SurfaceMesh> SurfaceMesh::of(const ForeignLeaf& foreign)
     for (unsigned index : mesh->_indices)
         if (index >= vertices.size()) return nullptr;
 
-    const double infinity = std::numeric_limits<double>::infinity();
+    mesh->project(vertices, leaf);
     BoxInView& view = mesh->_view;
-    view.screen = {glm::dvec2(infinity), glm::dvec2(-infinity)};
-    view.depth = {infinity, -infinity};
-    const osg::Matrixd toClip = *leaf._modelview * usualProjection(leaf);
-    const osg::Matrixd& toEye = *leaf._modelview;
-    mesh->_depths.resize(vertices.size());
-    mesh->_devices.resize(vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const osg::Vec3d p(vertices[i]);
-        const double depth =
-            -(p.x() * toEye(0, 2) + p.y() * toEye(1, 2) + p.z() * toEye(2, 2) + toEye(3, 2));
-        const osg::Vec4d clip = osg::Vec4d(p, 1.0) * toClip;
-        mesh->_depths[i] = static_cast<float>(depth);
-        mesh->_behindEye = mesh->_behindEye || !(clip.w() > 0.0);
-        const glm::dvec2 device(clip.x() / clip.w(), clip.y() / clip.w());
-        mesh->_devices[i] = glm::vec2(device);
-        view.screen.min = glm::min(view.screen.min, device);
-        view.screen.max = glm::max(view.screen.max, device);
-        view.depth.nearDepth = std::min(view.depth.nearDepth, depth);
-        view.depth.farDepth = std::max(view.depth.farDepth, depth);
-    }
     if (mesh->_behindEye) view.screen = foreign.view().screen;
     if (!std::isfinite(view.depth.nearDepth) || !std::isfinite(view.depth.farDepth)) return nullptr;
     // GL computes depths in float: what is flat and parallel to the view still has a range.
@@ -165,6 +103,32 @@ std::unique_ptr<SurfaceMesh> SurfaceMesh::of(const ForeignLeaf& foreign)
     view.depth.farDepth += slack;
     mesh->_slack = static_cast<float>(slack);
     return mesh;
+}
+
+// Finds depths and device coordinates of all vertices, and their bounds.
+void SurfaceMesh::project(const osg::Vec3Array& vertices, const osgUtil::RenderLeaf& leaf)
+{
+    const double infinity = std::numeric_limits<double>::infinity();
+    _view.screen = {glm::dvec2(infinity), glm::dvec2(-infinity)};
+    _view.depth = {infinity, -infinity};
+    const osg::Matrixd toClip = *leaf._modelview * usualProjection(leaf);
+    const osg::Matrixd& toEye = *leaf._modelview;
+    _depths.resize(vertices.size());
+    _devices.resize(vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const osg::Vec3d p(vertices[i]);
+        const double depth =
+            -(p.x() * toEye(0, 2) + p.y() * toEye(1, 2) + p.z() * toEye(2, 2) + toEye(3, 2));
+        const osg::Vec4d clip = osg::Vec4d(p, 1.0) * toClip;
+        _depths[i] = static_cast<float>(depth);
+        _behindEye = _behindEye || !(clip.w() > 0.0);
+        const glm::dvec2 device(clip.x() / clip.w(), clip.y() / clip.w());
+        _devices[i] = glm::vec2(device);
+        _view.screen.min = glm::min(_view.screen.min, device);
+        _view.screen.max = glm::max(_view.screen.max, device);
+        _view.depth.nearDepth = std::min(_view.depth.nearDepth, depth);
+        _view.depth.farDepth = std::max(_view.depth.farDepth, depth);
+    }
 }
 
 double SurfaceMesh::coverEstimate() const

@@ -53,6 +53,7 @@ public:
     osg::ref_ptr<osg::Drawable> drawable(Indices indices) const;
 
 private:
+    void project(const osg::Vec3Array& vertices, const osgUtil::RenderLeaf& leaf);
     bool touches(const VolumeOutline& outline, const unsigned* triangle) const;
 
     osg::ref_ptr<const osg::Geometry> _geometry;

@@ -186,13 +186,7 @@ void CaptureLeaf::draw(osg::State& state, const CaptureBuffers& buffers) const
         if (_settings.conditional) gl.glEndConditionalRender();
         break;
     case SORT:
-        bindFramebuffer(state, buffers.sortedFramebuffer);
-        state.applyTextureAttribute(UNIT_FIRST_CAPTURED, buffers.depths);
-        state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, target.opaqueDepth);
-        drawScreen(state, resources, _settings.area);
-        target.sortedSurfaces[0] = buffers.sorted;
-        target.sortedSurfaces[1] = buffers.colors;
-        _accumulation->bindTarget(state);
+        sort(state, buffers);
         break;
     case WRITE_DEPTH:
         state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.sorted);
@@ -210,6 +204,20 @@ void CaptureLeaf::draw(osg::State& state, const CaptureBuffers& buffers) const
         _accumulation->bindTarget(state);
         break;
     }
+}
+
+// From the slots to what the volume's shader reads.
+void CaptureLeaf::sort(osg::State& state, const CaptureBuffers& buffers) const
+{
+    ContextResources& resources = *contextResources(state);
+    AccumulationBuffers& target = resources.part<AccumulationBuffers>();
+    bindFramebuffer(state, buffers.sortedFramebuffer);
+    state.applyTextureAttribute(UNIT_FIRST_CAPTURED, buffers.depths);
+    state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, target.opaqueDepth);
+    drawScreen(state, resources, _settings.area);
+    target.sortedSurfaces[0] = buffers.sorted;
+    target.sortedSurfaces[1] = buffers.colors;
+    _accumulation->bindTarget(state);
 }
 
 osg::ref_ptr<osg::StateSet> captureState(int fragment)

@@ -58,6 +58,7 @@ private:
     CaptureBuffers* buffersIn(osg::State& state) const;
     void drawWithout(osg::State& state) const;
     void draw(osg::State& state, const CaptureBuffers& buffers) const;
+    void sort(osg::State& state, const CaptureBuffers& buffers) const;
 
     osg::ref_ptr<Accumulation> _accumulation;
     Settings _settings;
