@@ -108,8 +108,8 @@ TEST_F(RayFunction, DoesNotDependOnBricks)
         bricks->setBrickSize(glm::ivec3(9));
         twin.node->setVoxels(bricks);
         for (const bool joined : {true, false}) {
-            const JoiningScope scope(joined);
-            const FloatImage many = support::renderScene(twin.node, view());
+            const FloatImage many =
+                support::renderScene(twin.node, support::joining(view(), joined));
             const double rmse = support::compare(many, one).rmse;
             EXPECT_LT(rmse, surface ? 0.1 : 1e-4) << function;
             // A surface that is grazed may be missed by one of them.

@@ -3,7 +3,6 @@
 #include "Volumes.h"
 
 #include <osgVolumizer/render/cull/FrameTimes.h>
-#include <osgVolumizer/render/draw/VolumeProgram.h>
 
 #include <support/GLTest.h>
 
@@ -71,11 +70,10 @@ std::vector<RenderOptions> views()
 
 double samplesOf(VolumeAppearance& volume, const RenderOptions& options)
 {
-    render::setSampleCounting(true);
     double sum = 0.0;
-    for (const auto& pixel : support::renderScene(&volume, options).pixels)
+    for (const auto& pixel :
+         support::renderScene(&volume, support::countingSamples(options)).pixels)
         sum += pixel.r;
-    render::setSampleCounting(false);
     return sum;
 }
 

@@ -156,7 +156,9 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     const std::shared_ptr<VolumeLook> look = makeLook(*volume, table, visitor);
     volume->look = look;
     if (voxels) {
-        selectBricks(*volume, *voxels, visitor);
+        const ViewHooks& hooks = ViewHooks::of(visitor.getCurrentCamera());
+        look->features.countSamples = look->features.slab && hooks.countSamples;
+        selectBricks(*volume, *voxels, hooks, visitor);
         look->features.skipping = isWorthSkipping(*volume);
         report(*volume, *voxels, visitor);
         if (volume->bricks.empty()) return;
