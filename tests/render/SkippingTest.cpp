@@ -2,7 +2,6 @@
 
 #include "Volumes.h"
 
-
 #include <support/GLTest.h>
 
 #include <osg/Geode>
