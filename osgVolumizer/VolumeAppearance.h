@@ -78,6 +78,9 @@ public:
         /// ray enters with a value already beyond there is no surface.
         ISOSURFACE
     };
+    /// The names of the ray functions, in files too, in the order of their values.
+    static constexpr const char* const RAY_FUNCTION_NAMES[] = {
+        "COMPOSITE", "MAXIMUM", "MINIMUM", "AVERAGE", "SUM", "ISOSURFACE"};
     /// What happens where volumes overlap.
     enum CombineRule
     {

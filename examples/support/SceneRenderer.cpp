@@ -81,6 +81,7 @@ SceneRenderer::SceneRenderer(osg::Node* scene, const RenderOptions& options)
     _viewer->setKeyEventSetsDone(0);
     _viewer->setSceneData(scene);
     applyView();
+    if (_options.prepare) _options.prepare(*_viewer);
     if (_status.ok()) _viewer->realize();
 }
 

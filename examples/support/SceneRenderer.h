@@ -6,6 +6,7 @@
 
 #include <osgViewer/Viewer>
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ struct RenderOptions
     bool depth = false; ///< also read the depth buffer
     bool light = false; ///< OSG's head light
     bool computeNearFar = true;
+    /// Called once, before the first frame: for what is to be attached to camera or context.
+    std::function<void(osgViewer::Viewer&)> prepare;
 
     RenderOptions() { perspective(30.0); }
     RenderOptions& size(int w, int h);

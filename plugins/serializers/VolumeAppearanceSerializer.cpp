@@ -153,8 +153,6 @@ const char* const interpolationNames[] = {"NEAREST", "LINEAR", "CUBIC"};
 const char* const lookupNames[] = {"AUTOMATIC_LOOKUP", "AFTER_INTERPOLATION",
                                    "BEFORE_INTERPOLATION", "PREINTEGRATED"};
 const char* const modeNames[] = {"VIEWPORT_ALIGNED", "AXIS_ALIGNED", "SPHERICAL"};
-const char* const rayFunctionNames[] = {"COMPOSITE", "MAXIMUM", "MINIMUM",
-                                        "AVERAGE",   "SUM",     "ISOSURFACE"};
 const char* const ruleNames[] = {"ABSORB", "PAINT"};
 const char* const gradientNames[] = {"ON_THE_FLY", "PRECOMPUTED"};
 const char* const spaceNames[] = {"VIEW_VOLUME", "OBJECT", "PRIMITIVE"};
@@ -172,8 +170,8 @@ const std::vector<Property>& properties()
         samplingPeriod(),
         integer<&A::getMaximumSamples, &A::setMaximumSamples>("MaximumSamples"),
         number<&A::getOpacityUnit, &A::setOpacityUnit>("OpacityUnit", core::LENGTH_OR_NONE),
-        sinceVersion(
-            3, choice<&A::getRayFunction, &A::setRayFunction>("RayFunction", rayFunctionNames)),
+        sinceVersion(3, choice<&A::getRayFunction, &A::setRayFunction>("RayFunction",
+                                                                       A::RAY_FUNCTION_NAMES)),
         sinceVersion(3, number<&A::getIsoValue, &A::setIsoValue>("IsoValue", core::FINITE)),
         sinceVersion(3, flag<&A::getShading, &A::setShading>("Shading")),
         sinceVersion(3, material()),

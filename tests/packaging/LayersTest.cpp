@@ -1,5 +1,7 @@
-// Which part of the sources may include which: an arrow points down the list interact -> render ->
-// nodes -> core only, and core knows neither OSG nor GL.
+// Which part of the sources may include which: an arrow points down a list of layers only, and core
+// knows neither OSG nor GL.
+#include "Layers.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,11 +11,23 @@
 #include <string>
 #include <vector>
 
+using namespace osgVolumizer;
+
 namespace {
 
 namespace fs = std::filesystem;
 
 const fs::path library = fs::path(OSGVOLUMIZER_SOURCE_DIR) / "osgVolumizer";
+
+// From the top down: what may include all below it.
+const test::Layers PROJECT{{"plugins"},
+                           {"osgVolumizer/interact"},
+                           {"osgVolumizer/render"},
+                           {"osgVolumizer", "osgVolumizer/io"},
+                           {"osgVolumizer/core"}};
+const test::Layers RENDERING{{"osgVolumizer/render/cull"},     {"osgVolumizer/render/merge"},
+                             {"osgVolumizer/render/volume"},   {"osgVolumizer/render/draw"},
+                             {"osgVolumizer/render/textures"}, {"osgVolumizer/render/context"}};
 
 struct Include
 {
@@ -68,6 +82,44 @@ std::string layerOf(const Include& include)
     const fs::path relative = path.lexically_normal().lexically_relative(library);
     if (!fs::exists(path)) return "..";
     return relative.has_parent_path() ? relative.begin()->string() : "nodes";
+}
+
+/// What is included within the project, by quotes or as <osgVolumizer/...>.
+std::vector<test::Include> projectIncludes()
+{
+    const fs::path project = library.parent_path();
+    auto files = codeBelow(library);
+    for (const fs::path& file : codeBelow(project / "plugins"))
+        files.push_back(file);
+    std::vector<test::Include> includes;
+    for (const Include& include : includesOf(files)) {
+        const fs::path folder = include.quoted ? include.file.parent_path() : project;
+        const fs::path target = (folder / include.target).lexically_normal();
+        if (fs::exists(target))
+            includes.push_back({include.file.lexically_relative(project).generic_string(),
+                                target.lexically_relative(project).generic_string()});
+    }
+    return includes;
+}
+
+void expectDownwards(const test::Layers& layers)
+{
+    for (const test::Include& include : test::upwardIncludes(projectIncludes(), layers))
+        ADD_FAILURE() << include.file << " includes " << include.target;
+}
+
+/// Every include between two layers must be found when it is turned round, and no other.
+void expectFoundTurnedRound(const test::Layers& layers, std::size_t atLeast)
+{
+    std::vector<test::Include> turned, between;
+    for (const test::Include& include : projectIncludes()) {
+        const int from = layerOf(include.file, layers), to = layerOf(include.target, layers);
+        if (from < 0 || to < 0 || from > to) continue;
+        turned.push_back({include.target, include.file});
+        if (from != to) between.push_back(turned.back());
+    }
+    EXPECT_GE(between.size(), atLeast);
+    EXPECT_EQ(test::upwardIncludes(turned, layers), between);
 }
 
 bool startsWith(const std::string& text, const std::string& prefix)
@@ -132,6 +184,58 @@ TEST(Layers, RenderingDoesNotIncludeInteraction)
     ASSERT_FALSE(includes.empty());
     for (const Include& include : includes)
         EXPECT_NE(layerOf(include), "interact") << include.file << " includes " << include.target;
+}
+
+TEST(Layers, LibrariesIncludeDownwardsOnly)
+{
+    expectDownwards(PROJECT);
+}
+
+TEST(Layers, StagesOfRenderingIncludeDownwardsOnly)
+{
+    expectDownwards(RENDERING);
+}
+
+TEST(Layers, EveryFileOfRenderingIsInAStage)
+{
+    for (const fs::path& file : codeBelow(library / "render")) {
+        const fs::path relative = file.lexically_relative(library.parent_path());
+        EXPECT_GE(test::layerOf(relative.generic_string(), RENDERING), 0) << relative;
+    }
+}
+
+TEST(Layers, IncludesTurnedRoundAreFound)
+{
+    expectFoundTurnedRound(PROJECT, 100);
+    expectFoundTurnedRound(RENDERING, 100);
+}
+
+TEST(Layers, AFileIsInTheInnermostFolderNamed)
+{
+    const test::Layers layers{{"a/inner"}, {"a", "a/other"}, {"a/inner/core"}};
+    EXPECT_EQ(test::layerOf("a/inner/x.h", layers), 0);
+    EXPECT_EQ(test::layerOf("a/x.h", layers), 1);
+    EXPECT_EQ(test::layerOf("a/other/x.h", layers), 1);
+    EXPECT_EQ(test::layerOf("a/unknown/x.h", layers), 1);
+    EXPECT_EQ(test::layerOf("a/inner/core/x.h", layers), 2);
+    EXPECT_EQ(test::layerOf("a/innermost/x.h", layers), 1); // another name
+    EXPECT_EQ(test::layerOf("b/x.h", layers), -1);
+}
+
+TEST(Layers, OnlyUpwardIncludesAreFound)
+{
+    const test::Layers layers{{"top"}, {"middle"}, {"bottom"}};
+    const std::vector<test::Include> fine{{"top/x.h", "middle/x.h"},
+                                          {"top/x.h", "bottom/x.h"},
+                                          {"middle/x.h", "middle/y.h"},
+                                          {"middle/x.h", "elsewhere/y.h"},
+                                          {"elsewhere/x.h", "top/y.h"}};
+    EXPECT_TRUE(test::upwardIncludes(fine, layers).empty());
+    const std::vector<test::Include> wrong{
+        {"bottom/x.h", "middle/x.h"}, {"bottom/x.h", "top/x.h"}, {"middle/x.h", "top/x.h"}};
+    auto both = fine;
+    both.insert(both.begin() + 2, wrong.begin(), wrong.end());
+    EXPECT_EQ(test::upwardIncludes(both, layers), wrong);
 }
 
 TEST(Layers, OwnIncludesExist)

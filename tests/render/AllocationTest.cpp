@@ -53,19 +53,16 @@ protected:
                               {0.8f, 0.3f, 0.1f, 0.5f}, true);
         setErrorHandler(_messages);
     }
-    void TearDown() override
-    {
-        render::mockAllocation({});
-        setErrorHandler(nullptr);
-    }
+    void TearDown() override { setErrorHandler(nullptr); }
 
     // The last of some frames, of which the first finds out what there is no memory for.
-    FloatImage show(const std::vector<osg::Node*>& nodes, unsigned frames)
+    FloatImage show(const std::vector<osg::Node*>& nodes, unsigned frames,
+                    const std::function<bool(const AllocationRequest&)>& isRefused = {})
     {
         osg::ref_ptr<osg::Group> scene = new osg::Group;
         for (osg::Node* node : nodes)
             scene->addChild(node);
-        RenderOptions options = view();
+        RenderOptions options = support::refusing(view(), isRefused);
         options.frames = frames;
         support::SceneRenderer renderer(scene, options);
         const FloatImage image = renderer.render();
@@ -77,13 +74,12 @@ protected:
     {
         _messages->texts.clear();
         _refusals = 0;
-        render::mockAllocation([this, isRefused](const AllocationRequest& request) {
+        const auto refuse = [this, isRefused](const AllocationRequest& request) {
             const bool refused = request.kind == AllocationRequest::TARGET && isRefused(request);
             _refusals += refused;
             return refused;
-        });
-        const FloatImage image = show(nodes, frames);
-        render::mockAllocation({});
+        };
+        const FloatImage image = show(nodes, frames, refuse);
         EXPECT_GT(_refusals, 0);
         return image;
     }
@@ -171,7 +167,7 @@ TEST_F(TargetAllocation, SurfacesAreDrawnByIntervalsWhereTheyCannotBeSorted)
     expectNear(showWithout(layers, {_volume, _other, _translucent}, 3), expected, 6e-3);
 }
 
-TEST_F(TargetAllocation, WithoutLayersOfIntervalsSurfacesStayWhole)
+TEST_F(TargetAllocation, WithoutSplitsOfIntervalsSurfacesStayWhole)
 {
     const auto all = [](const AllocationRequest& r) {
         return r.size.z > 1 || r.internalFormat == GL_DEPTH32F_STENCIL8;

@@ -84,8 +84,8 @@ TEST_P(Bricks, OneEightAndSixtyFourShowTheSame)
                 continue;
             }
             for (const bool joined : {true, false}) {
-                const JoiningScope scope(joined);
-                if (!joined) image = support::renderScene(twin.node, all[v]);
+                if (!joined)
+                    image = support::renderScene(twin.node, support::joining(all[v], false));
                 const support::Difference d = compare(image, whole);
                 EXPECT_LT(d.maximum, joined && slabs ? 1e-6 : 1e-4)
                     << "view " << v << ", " << perAxis << " bricks per axis, at " << d.worstX << " "
@@ -105,8 +105,8 @@ TEST_P(Bricks, UnevenOnesAgreeWithTheOracle)
     const RenderOptions options = view({40, -30, 30}, {8, 12, 6}, 45.0);
     const FloatImage expected = oraclePicture(oracleScene(twin.oracle), options);
     for (const bool joined : {true, false}) {
-        const JoiningScope scope(joined);
-        EXPECT_LT(compare(support::renderScene(twin.node, options), expected).rmse, 2e-3);
+        const FloatImage image = support::renderScene(twin.node, support::joining(options, joined));
+        EXPECT_LT(compare(image, expected).rmse, 2e-3);
     }
 }
 

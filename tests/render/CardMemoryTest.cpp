@@ -4,8 +4,8 @@
 
 #include <osgVolumizer/Error.h>
 #include <osgVolumizer/render/context/Allocation.h>
-#include <osgVolumizer/render/textures/BrickResidency.h>
 #include <osgVolumizer/render/context/ContextLimits.h>
+#include <osgVolumizer/render/textures/BrickResidency.h>
 
 #include <support/GLTest.h>
 
@@ -40,8 +40,7 @@ double counter(const support::SceneRenderer& renderer, const std::string& name)
 
 FloatImage separately(osg::Node* scene, const RenderOptions& options)
 {
-    const JoiningScope scope(false);
-    return support::renderScene(scene, options);
+    return support::renderScene(scene, support::joining(options, false));
 }
 
 // Collects what is reported.
@@ -73,17 +72,17 @@ private:
 class CardMemory : public support::GLTest
 {
 protected:
-    void TearDown() override
+    static RenderOptions refusing(const RenderOptions& options, AllocationRequest::Kind kind,
+                                  int largestSide = 0)
     {
-        render::mockAllocation({});
-        render::mockContextLimits({});
-    }
-    static void refuse(AllocationRequest::Kind kind, int largestSide = 0)
-    {
-        render::mockAllocation([kind, largestSide](const AllocationRequest& request) {
+        return support::refusing(options, [kind, largestSide](const AllocationRequest& request) {
             return request.kind == kind &&
                    std::max({request.size.x, request.size.y, request.size.z}) > largestSide;
         });
+    }
+    static void refuseNothing(support::SceneRenderer& renderer)
+    {
+        support::contextHooks(renderer.viewer()).refuses = nullptr;
     }
     // A size of bricks for each test, since a message is reported once in a process.
     static osg::ref_ptr<A> makeBricks(const glm::ivec3& size, int brick, int overlap = 1)
@@ -172,9 +171,8 @@ TEST_F(CardMemory, BricksThatCannotShareATextureHaveTheirOwn)
         volume->setGradients(way.gradients);
         const FloatImage expected = separately(volume, view());
         volume->releaseGLObjects();
-        refuse(AllocationRequest::JOINED_BRICKS);
         Reports reports;
-        support::SceneRenderer renderer(volume, view());
+        support::SceneRenderer renderer(volume, refusing(view(), AllocationRequest::JOINED_BRICKS));
         // The first frame finds out while it draws, the second one knows.
         for (int frame = 0; frame < 2; ++frame) {
             const support::Difference d = compare(renderer.render(), expected);
@@ -186,7 +184,6 @@ TEST_F(CardMemory, BricksThatCannotShareATextureHaveTheirOwn)
         EXPECT_EQ(renderer.glError(), 0u);
         EXPECT_EQ(reports.count(std::to_string(SIZE + number) + ",33,33"), 1);
         EXPECT_EQ(reports.all(), 1u);
-        render::mockAllocation({});
     }
 }
 
@@ -200,11 +197,11 @@ TEST_F(CardMemory, JoinedBricksKeepTheirOrderInEveryView)
             RenderOptions options = view().lookAt(eye, {16, 17, 15}, {0.1, 0, 1});
             if (parallel) options.orthographic(25.0);
             volume->releaseGLObjects();
-            render::mockAllocation({});
             const FloatImage expected = separately(volume, options);
             volume->releaseGLObjects();
-            refuse(AllocationRequest::JOINED_BRICKS);
-            const support::Difference d = compare(support::renderScene(volume, options), expected);
+            const FloatImage image =
+                support::renderScene(volume, refusing(options, AllocationRequest::JOINED_BRICKS));
+            const support::Difference d = compare(image, expected);
             EXPECT_LE(d.maximum, 1e-5) << eye.x() << " at " << d.worstX << " " << d.worstY;
         }
 }
@@ -217,9 +214,8 @@ TEST_F(CardMemory, ABrickThatIsTooLargeIsDrawnCoarser)
     volume->setLookupTable(makeTable(smoothPoints(0.1)));
     const FloatImage expected = support::renderScene(volume, view());
     volume->releaseGLObjects();
-    refuse(AllocationRequest::BRICK, 8);
     Reports reports;
-    support::SceneRenderer renderer(volume, view());
+    support::SceneRenderer renderer(volume, refusing(view(), AllocationRequest::BRICK, 8));
     // What varies linearly loses nothing.
     EXPECT_LE(compare(renderer.render(), expected).maximum, 1e-3);
     renderer.render();
@@ -232,16 +228,15 @@ TEST_F(CardMemory, ABrickThatIsTooLargeIsDrawnCoarser)
 TEST_F(CardMemory, ABrickThatIsRefusedAltogetherIsAHole)
 {
     osg::ref_ptr<A> volume = makeBricks({29, SIZE, SIZE}, 64);
-    refuse(AllocationRequest::BRICK);
     Reports reports;
-    support::SceneRenderer renderer(volume, view());
+    support::SceneRenderer renderer(volume, refusing(view(), AllocationRequest::BRICK));
     for (int frame = 0; frame < 2; ++frame)
         EXPECT_EQ(support::coveredPixels(renderer.render()).count(), 0u);
     EXPECT_EQ(renderer.glError(), 0u);
     EXPECT_EQ(reports.count("not drawn"), 1);
     EXPECT_EQ(reports.all(), 1u);
     // Once there is room again it is there.
-    render::mockAllocation({});
+    refuseNothing(renderer);
     volume->releaseGLObjects();
     EXPECT_GT(support::coveredPixels(renderer.render(), 0.1f).count(), 500u);
 }
@@ -258,12 +253,12 @@ TEST_F(CardMemory, WithoutCellsNothingIsLeaptOver)
     const FloatImage expected = support::renderScene(volume, view());
     volume->releaseGLObjects();
     int asked = 0;
-    render::mockAllocation([&asked](const AllocationRequest& request) {
+    const auto isRefused = [&asked](const AllocationRequest& request) {
         asked += request.kind == AllocationRequest::CELLS;
         return request.kind == AllocationRequest::CELLS;
-    });
+    };
     Reports reports;
-    support::SceneRenderer renderer(volume, view());
+    support::SceneRenderer renderer(volume, support::refusing(view(), isRefused));
     EXPECT_LE(compare(renderer.render(), expected).maximum, 1e-5);
     EXPECT_GT(asked, 0);
     EXPECT_EQ(renderer.glError(), 0u);
@@ -276,13 +271,12 @@ TEST_F(CardMemory, WithoutItsTableAVolumeIsNotDrawn)
     for (const bool gathers : {false, true}) {
         volume->setRayFunction(gathers ? A::MAXIMUM : A::COMPOSITE);
         volume->releaseGLObjects();
-        refuse(AllocationRequest::TABLE);
         Reports reports;
-        support::SceneRenderer renderer(volume, view());
+        support::SceneRenderer renderer(volume, refusing(view(), AllocationRequest::TABLE));
         EXPECT_EQ(support::coveredPixels(renderer.render()).count(), 0u);
         EXPECT_EQ(renderer.glError(), 0u);
         EXPECT_LE(reports.all(), 1u);
-        render::mockAllocation({});
+        refuseNothing(renderer);
         EXPECT_GT(support::coveredPixels(renderer.render(), 0.1f).count(), 500u);
     }
 }
@@ -298,10 +292,10 @@ TEST_F(CardMemory, PaintThatIsRefusedPaintsNothing)
     scene->addChild(paint);
     EXPECT_GT(compare(support::renderScene(scene, view()), plain).maximum, 0.02);
     paint->releaseGLObjects();
-    render::mockAllocation([](const AllocationRequest& request) {
-        return request.kind == AllocationRequest::BRICK && request.size.x != 12;
-    });
-    support::SceneRenderer renderer(scene, view());
+    support::SceneRenderer renderer(
+        scene, support::refusing(view(), [](const AllocationRequest& request) {
+            return request.kind == AllocationRequest::BRICK && request.size.x != 12;
+        }));
     EXPECT_LE(compare(renderer.render(), plain).maximum, 1e-4);
     EXPECT_EQ(renderer.glError(), 0u);
 }
@@ -356,19 +350,19 @@ TEST_F(CardMemory, LargeVolumesTakeNoMoreThanTheirFile)
 {
     const double file = double(LARGE) * LARGE * LARGE;
     for (const bool joined : {true, false}) {
-        const JoiningScope scope(joined);
         osg::ref_ptr<BytesSource> source;
         osg::ref_ptr<A> volume = makeLarge(130, source);
         double asked = 0.0;
-        render::mockAllocation([&asked](const AllocationRequest& request) {
+        const auto count = [&asked](const AllocationRequest& request) {
             const bool bytes = request.internalFormat == GL_R8;
             if (request.kind == AllocationRequest::BRICK ||
                 request.kind == AllocationRequest::JOINED_BRICKS)
                 asked +=
                     double(request.size.x) * request.size.y * request.size.z * (bytes ? 1.0 : 4.0);
             return false;
-        });
-        support::SceneRenderer renderer(volume, view());
+        };
+        const RenderOptions options = support::joining(view(), joined);
+        support::SceneRenderer renderer(volume, support::refusing(options, count));
         EXPECT_GT(support::coveredPixels(renderer.render(), 0.1f).count(), 500u);
         EXPECT_GE(asked, file);
         EXPECT_LE(asked, 1.05 * file); // shared samples
@@ -390,10 +384,9 @@ TEST_F(CardMemory, LargeVolumesTakeNoMoreThanTheirFile)
         const FloatImage image = renderer.render();
         EXPECT_EQ(source->reads, reads);
         EXPECT_EQ(counter(renderer, "bytes uploaded"), 0);
-        support::SceneRenderer second(volume, view());
+        support::SceneRenderer second(volume, options);
         EXPECT_LE(compare(second.render(), image).maximum, 1e-6);
         EXPECT_EQ(source->reads, reads + bricks);
-        render::mockAllocation({});
     }
 }
 

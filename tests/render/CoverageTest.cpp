@@ -45,7 +45,6 @@ protected:
     }
 
     static constexpr double ALPHA = 1e-4;
-    JoiningScope _oneByOne{false};
     TwinVolume _twin;
 };
 
@@ -72,7 +71,7 @@ TEST_P(PixelCoverage, OncePerPlane)
     for (const osg::Vec3d& towards : directions()) {
         const RenderOptions options = parallelView(towards);
         const oracle::Camera camera = support::oracleCamera(options);
-        const FloatImage image = support::renderScene(_twin.node, options);
+        const FloatImage image = support::renderScene(_twin.node, support::joining(options, false));
         // Depths of the surfaces: the middles of equal layers over the geometry.
         double nearest = 1e30, farthest = -1e30;
         const auto set = static_cast<VolumeGeometry*>(_twin.node->getChild(0))->getTetraSet();
@@ -120,7 +119,8 @@ TEST_P(PixelCoverage, OncePerSlab)
         RenderOptions options = parallelView(towards);
         for (const bool perspective : {false, true}) {
             if (perspective) options.perspective(60.0);
-            const FloatImage image = support::renderScene(_twin.node, options);
+            const FloatImage image =
+                support::renderScene(_twin.node, support::joining(options, false));
             const FloatImage expected = oraclePicture(oracleScene(_twin.oracle), options);
             const support::Difference d = compare(image, expected);
             EXPECT_GT(d.pixels, 1500u);

@@ -155,8 +155,9 @@ TEST_F(Interpolation, BricksShowNoSeams)
         bricks->setOverlap(volume->getRequiredOverlap());
         volume->setVoxels(bricks);
         for (const bool joined : {true, false}) {
-            const JoiningScope scope(joined);
-            const auto d = support::compare(support::renderScene(volume, options), one);
+            const FloatImage image =
+                support::renderScene(volume, support::joining(options, joined));
+            const auto d = support::compare(image, one);
             EXPECT_LT(d.rmse, kind == VolumeAppearance::NEAREST ? 2e-3 : 1e-5) << kind;
         }
     }

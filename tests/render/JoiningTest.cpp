@@ -71,8 +71,7 @@ double counter(const support::SceneRenderer& renderer, const std::string& name)
 
 FloatImage separately(osg::Node* scene, const RenderOptions& options)
 {
-    const JoiningScope scope(false);
-    return support::renderScene(scene, options);
+    return support::renderScene(scene, support::joining(options, false));
 }
 
 // Full on one side of a slanted plane, and something else beyond it that a band-pass hides too.
@@ -127,7 +126,7 @@ TEST_F(Joining, SixtyFourBricksAreOneDrawCall)
     EXPECT_EQ(counter(renderer, "bricks uploaded"), 0);
     renderer.options() = view();
     EXPECT_LE(compare(image, separately(volume, view())).maximum, 1e-4);
-    const JoiningScope scope(false);
+    support::viewHooks(renderer.viewer()).joining = false;
     renderer.render();
     EXPECT_EQ(counter(renderer, "draw calls"), 64);
 }
@@ -282,11 +281,11 @@ TEST_F(Joining, TooLargeForATextureStaysApart)
 {
     osg::ref_ptr<VolumeAppearance> volume = makeBricks(bumps, smoothPoints(0.2));
     const FloatImage expected = support::renderScene(volume, view());
-    render::mockContextLimits([](render::ContextLimits& limits) { limits.texture3DSize = 32; });
-    support::SceneRenderer renderer(volume, view());
+    support::SceneRenderer renderer(
+        volume,
+        support::limited(view(), [](render::ContextLimits& limits) { limits.texture3DSize = 32; }));
     EXPECT_LE(compare(renderer.render(), expected).maximum, 1e-4);
     EXPECT_EQ(counter(renderer, "draw calls"), 64);
-    render::mockContextLimits({});
 }
 
 TEST_F(Joining, AnUnreadableBrickIsAHole)

@@ -31,7 +31,6 @@ protected:
         _twin.setPeriod(0.1);
         clearLastError();
     }
-    void TearDown() override { render::mockContextLimits({}); }
 
     // An 8-bit framebuffer, so that what is more comes from our own target.
     static RenderOptions view()
@@ -40,6 +39,10 @@ protected:
             {40, -20, 30}, {12, 10, 8}, {0, 0, 1});
         options.format = PictureTarget::BYTE;
         return options;
+    }
+    static RenderOptions smallTextures()
+    {
+        return support::limited(view(), [](ContextLimits& limits) { limits.texture3DSize = 13; });
     }
     FloatImage exact() const
     {
@@ -95,8 +98,9 @@ TEST_F(Limits, BitsOfTheTargetAreThoseAskedFor)
 TEST_F(Limits, WithoutFloatTargetsFixedPointIsUsed)
 {
     const FloatImage expected = exact();
-    render::mockContextLimits([](ContextLimits& limits) { limits.floatTargets = false; });
-    const FloatImage image = support::renderScene(_twin.node, view());
+    const FloatImage image = support::renderScene(
+        _twin.node,
+        support::limited(view(), [](ContextLimits& limits) { limits.floatTargets = false; }));
     EXPECT_TRUE(lastErrorNames("no float targets")) << getLastError().text;
     // 250 blends, each off by at most half of 1/65535, and the framebuffer's own rounding.
     EXPECT_LE(compare(image, expected).maximum, 0.5 / 255.0 + 250 * 0.5 / 65535.0);
@@ -114,8 +118,8 @@ TEST_F(Limits, WithoutWhatVolumesNeedTheRestIsShown)
         {"OpenGL 2.1", [](ContextLimits& limits) { limits.version = 2.1; }},
         {"no 3D textures", [](ContextLimits& limits) { limits.texture3DSize = 0; }}};
     for (const auto& lack : lacks) {
-        render::mockContextLimits(lack.second);
-        EXPECT_EQ(compare(support::renderScene(scene, view()), rest).maximum, 0.0);
+        const FloatImage image = support::renderScene(scene, support::limited(view(), lack.second));
+        EXPECT_EQ(compare(image, rest).maximum, 0.0);
         EXPECT_TRUE(lastErrorNames(lack.first)) << getLastError().text;
     }
 }
@@ -138,14 +142,12 @@ TEST_F(Limits, BricksLargerThanTexturesAreDrawnCoarser)
         const osg::ref_ptr<VolumeAppearance> straight = volume(linear), bent = volume(cubic);
         const FloatImage exactStraight = support::renderScene(straight, view());
         const FloatImage exactBent = support::renderScene(bent, view());
-        render::mockContextLimits([](ContextLimits& limits) { limits.texture3DSize = 13; });
         // What varies linearly loses nothing; 8-bit voxels are rounded and so are no more linear.
         const double rounding = type == VoxelType::UINT8 ? 3e-3 : 1e-3;
-        EXPECT_LE(compare(support::renderScene(straight, view()), exactStraight).maximum,
+        EXPECT_LE(compare(support::renderScene(straight, smallTextures()), exactStraight).maximum,
                   1.0 / 255.0 + rounding);
         EXPECT_TRUE(lastErrorNames("25,21,17 voxels")) << getLastError().text;
-        EXPECT_LE(compare(support::renderScene(bent, view()), exactBent).rmse, 4e-3);
-        render::mockContextLimits({});
+        EXPECT_LE(compare(support::renderScene(bent, smallTextures()), exactBent).rmse, 4e-3);
     }
 }
 
@@ -165,7 +167,7 @@ TEST_F(Limits, PaintLargerThanTexturesIsCoarserToo)
     scene->addChild(paint);
     const FloatImage expected = support::renderScene(scene, view());
     EXPECT_GT(compare(expected, plain).maximum, 0.05);
-    render::mockContextLimits([](ContextLimits& limits) { limits.texture3DSize = 13; });
-    EXPECT_LE(compare(support::renderScene(scene, view()), expected).maximum, 1.0 / 255.0 + 1e-3);
+    EXPECT_LE(compare(support::renderScene(scene, smallTextures()), expected).maximum,
+              1.0 / 255.0 + 1e-3);
     EXPECT_TRUE(lastErrorNames("23,21,17 voxels")) << getLastError().text;
 }

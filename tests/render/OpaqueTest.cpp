@@ -61,8 +61,8 @@ protected:
             for (double period = slabs ? 2.0 : 1.0; period > 0.2; period *= 0.5) {
                 _twin.setPeriod(period);
                 image = support::renderScene(_group, options);
-                const JoiningScope scope(false);
-                const FloatImage apart = support::renderScene(_group, options);
+                const FloatImage apart =
+                    support::renderScene(_group, support::joining(options, false));
                 steps.push_back(period);
                 errors.push_back(std::max(compare(image, expected, away).rmse,
                                           compare(apart, expected, away).rmse));

@@ -3,6 +3,8 @@
 #include "Volumes.h"
 
 #include <osgVolumizer/Error.h>
+#include <osgVolumizer/render/draw/RayFunctions.h>
+#include <osgVolumizer/render/draw/VolumeProgram.h>
 
 #include <oracles/Projection.h>
 #include <oracles/Ray.h>
@@ -10,6 +12,7 @@
 #include <support/Shapes.h>
 
 #include <cmath>
+#include <iterator>
 
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
@@ -108,8 +111,8 @@ TEST_F(RayFunction, DoesNotDependOnBricks)
         bricks->setBrickSize(glm::ivec3(9));
         twin.node->setVoxels(bricks);
         for (const bool joined : {true, false}) {
-            const JoiningScope scope(joined);
-            const FloatImage many = support::renderScene(twin.node, view());
+            const FloatImage many =
+                support::renderScene(twin.node, support::joining(view(), joined));
             const double rmse = support::compare(many, one).rmse;
             EXPECT_LT(rmse, surface ? 0.1 : 1e-4) << function;
             // A surface that is grazed may be missed by one of them.
@@ -223,6 +226,70 @@ TEST_F(RayFunction, WhatRgbaVoxelsCannotDoIsSaid)
     EXPECT_NE(getLastError().text.find("four channels"), std::string::npos);
     volume->setRayFunction(VolumeAppearance::COMPOSITE);
     EXPECT_EQ(support::compare(averaged, support::renderScene(volume, options)).maximum, 0.0);
+}
+
+// Compiles programs in a context of the renderer's.
+class Compiles : public osg::Drawable
+{
+public:
+    Compiles()
+    {
+        setUseDisplayList(false);
+        setSupportsDisplayList(false);
+        setInitialBound(osg::BoundingBox(-1, -1, -1, 1, 1, 1));
+    }
+    void drawImplementation(osg::RenderInfo& renderInfo) const override
+    {
+        osg::State& state = *renderInfo.getState();
+        for (const auto& program : programs) {
+            program.second->apply(state);
+            const auto* made = program.second->getPCP(state);
+            std::string log;
+            if (made) made->getInfoLog(log);
+            EXPECT_TRUE(made && made->isLinked()) << program.first << ": " << log;
+            compiled += made && made->isLinked();
+        }
+        state.get<osg::GLExtensions>()->glUseProgram(0);
+        state.setLastAppliedProgramObject(nullptr);
+        state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
+    }
+    std::vector<std::pair<std::string, osg::ref_ptr<osg::Program>>> programs;
+    mutable std::size_t compiled = 0;
+};
+
+void addPrograms(Function function, Compiles& compiles)
+{
+    const render::RayFunctionRow& row = render::rowOf(function);
+    const std::string name = VolumeAppearance::RAY_FUNCTION_NAMES[function];
+    for (const bool rgba : {false, true}) {
+        if (rgba && row.needsOneComponent) continue;
+        for (const bool slab : {true, false}) {
+            if (!slab && row.needsSlabs) continue;
+            render::ProgramFeatures features;
+            features.rayFunction = function;
+            features.rgba = rgba;
+            features.slab = features.opaqueDepth = slab;
+            const osg::ref_ptr<osg::StateSet> set = render::volumeStateSet(features);
+            compiles.programs.emplace_back(
+                name + (slab ? " of slabs" : " of slices"),
+                static_cast<osg::Program*>(set->getAttribute(osg::StateAttribute::PROGRAM)));
+        }
+        if (row.gathers)
+            compiles.programs.emplace_back(name + " resolved",
+                                           render::makeResolveProgram(function, rgba));
+    }
+}
+
+TEST_F(RayFunction, EveryShaderCompiles)
+{
+    osg::ref_ptr<Compiles> compiles = new Compiles;
+    for (std::size_t i = 0; i < std::size(VolumeAppearance::RAY_FUNCTION_NAMES); ++i)
+        addPrograms(static_cast<Function>(i), *compiles);
+    EXPECT_GE(compiles->programs.size(), 20u);
+    const RenderOptions options =
+        RenderOptions().size(8, 8).lookAt({0, -9, 0}, {0, 0, 0}, {0, 0, 1});
+    support::renderScene(compiles, options);
+    EXPECT_EQ(compiles->compiled, compiles->programs.size());
 }
 
 TEST(RayFunctionProperties, RefuseWhatHasNoMeaning)

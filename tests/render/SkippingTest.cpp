@@ -2,9 +2,6 @@
 
 #include "Volumes.h"
 
-#include <osgVolumizer/render/cull/BrickSelection.h>
-#include <osgVolumizer/render/draw/VolumeProgram.h>
-
 #include <support/GLTest.h>
 
 #include <osg/Geode>
@@ -27,12 +24,12 @@ RenderOptions view()
                                                                  {0, 0, 1});
 }
 
-// Draws numbers of samples instead of colours for as long as it lives.
-struct SampleCounting
+// The same view, with or without skipping.
+RenderOptions skipping(const RenderOptions& options, bool on)
 {
-    SampleCounting() { render::setSampleCounting(true); }
-    ~SampleCounting() { render::setSampleCounting(false); }
-};
+    return support::prepared(
+        options, [on](osgViewer::Viewer& viewer) { support::viewHooks(viewer).skipping = on; });
+}
 
 struct SampleCounts
 {
@@ -42,9 +39,9 @@ struct SampleCounts
 
 SampleCounts countSamples(osg::Node* scene, const RenderOptions& options)
 {
-    const SampleCounting counting;
     SampleCounts counts;
-    for (const auto& pixel : support::renderScene(scene, options).pixels) {
+    for (const auto& pixel :
+         support::renderScene(scene, support::countingSamples(options)).pixels) {
         counts.pixels.push_back(pixel.r);
         counts.sum += pixel.r;
         counts.maximum = std::max(counts.maximum, double(pixel.r));
@@ -123,11 +120,10 @@ TEST_F(Skipping, ShowsTheSame)
                 const FloatImage image = support::renderScene(volume, view());
                 EXPECT_GT(support::coveredPixels(image, 0.2f).count(), 100u);
                 const SampleCounts few = countSamples(volume, view());
-                render::setSkipping(false);
-                const SampleCounts all = countSamples(volume, view());
+                const RenderOptions whole = skipping(view(), false);
+                const SampleCounts all = countSamples(volume, whole);
                 const support::Difference d =
-                    support::compare(image, support::renderScene(volume, view()));
-                render::setSkipping(true);
+                    support::compare(image, support::renderScene(volume, whole));
                 EXPECT_LT(way.continuous ? d.maximum : d.rmse, 1e-4)
                     << way.name << ", bricks of " << brick << ", at " << d.worstX << " "
                     << d.worstY;

@@ -2,9 +2,6 @@
 
 #include "Volumes.h"
 
-#include <osgVolumizer/render/cull/FrameTimes.h>
-#include <osgVolumizer/render/draw/VolumeProgram.h>
-
 #include <support/GLTest.h>
 
 #include <cmath>
@@ -71,11 +68,10 @@ std::vector<RenderOptions> views()
 
 double samplesOf(VolumeAppearance& volume, const RenderOptions& options)
 {
-    render::setSampleCounting(true);
     double sum = 0.0;
-    for (const auto& pixel : support::renderScene(&volume, options).pixels)
+    for (const auto& pixel :
+         support::renderScene(&volume, support::countingSamples(options)).pixels)
         sum += pixel.r;
-    render::setSampleCounting(false);
     return sum;
 }
 
@@ -169,42 +165,6 @@ TEST_F(Tolerance, FollowsTableAndData)
     std::fill_n(static_cast<float*>(source->data()), SIZE * SIZE * SIZE, 0.5f);
     voxels->dirty();
     EXPECT_GT(voxelsPerSample(smoothPoints(0.05)), 10.0);
-}
-
-TEST(FrameTimes, AreReachedWhileMovingAndForgottenAtRest)
-{
-    render::FrameTimes times;
-    double now = 0.0, stretch = 1.0;
-    unsigned frame = 1;
-    const auto draw = [&](double position, double target) {
-        const double before = stretch;
-        stretch = times.stretch(7, frame++, osg::Matrixd::translate(position, 0, 0), now, target);
-        now += 0.005 + 0.08 / stretch; // part of a frame does not depend on samples
-        return stretch / before;
-    };
-    draw(0.0, 0.02);
-    EXPECT_EQ(stretch, 1.0);
-    for (int i = 1; i <= 60; ++i) {
-        const double change = draw(0.1 * i, 0.02);
-        EXPECT_LE(change, 2.0); // no leaps
-        EXPECT_GE(change, 1.0 / 1.5);
-    }
-    EXPECT_NEAR(0.005 + 0.08 / stretch, 0.02, 0.002);
-    // At rest all is as it was, at once and for good; then it goes on where it was.
-    const double moving = stretch;
-    for (int i = 0; i < 5; ++i) {
-        draw(6.0, 0.02);
-        EXPECT_EQ(stretch, 1.0);
-    }
-    draw(6.1, 0.02);
-    EXPECT_NEAR(stretch, moving, 0.1 * moving);
-    // A target that is out of reach has bounds; one that is easy changes nothing.
-    for (int i = 0; i < 60; ++i)
-        draw(7.0 + i, 1e-6);
-    EXPECT_EQ(stretch, render::FrameTimes::LARGEST);
-    for (int i = 0; i < 60; ++i)
-        draw(70.0 + i, 10.0);
-    EXPECT_EQ(stretch, 1.0);
 }
 
 TEST_F(Tolerance, MovingViewsAreCoarserOnly)

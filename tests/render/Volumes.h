@@ -6,7 +6,7 @@
 #include <oracles/Grid.h>
 #include <oracles/Scene.h>
 #include <support/Compare.h>
-#include <support/JoiningScope.h>
+#include <support/Hooks.h>
 #include <support/OracleView.h>
 
 #include <gtest/gtest.h>
@@ -23,7 +23,6 @@ inline std::string techniqueName(const ::testing::TestParamInfo<VolumeAppearance
     return info.param == VolumeAppearance::SLABS ? "Slabs" : "Slices";
 }
 
-using support::JoiningScope;
 using Points = std::vector<core::TransferFunction::Point>;
 
 /// Float voxels from a function of the voxel frame.

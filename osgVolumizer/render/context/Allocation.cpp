@@ -1,5 +1,6 @@
 #include "Allocation.h"
 
+#include "ContextHooks.h"
 #include "GLErrors.h"
 #include "ProgramInterface.h"
 
@@ -8,30 +9,12 @@
 
 #include <glm/common.hpp>
 
-#include <mutex>
+#include <functional>
 
 namespace osgVolumizer {
 namespace render {
 
 namespace {
-
-std::mutex& mockMutex()
-{
-    static std::mutex mutex;
-    return mutex;
-}
-
-std::function<bool(const AllocationRequest&)>& mock()
-{
-    static std::function<bool(const AllocationRequest&)> isRefused;
-    return isRefused;
-}
-
-bool isMockedAway(const AllocationRequest& request)
-{
-    std::lock_guard<std::mutex> lock(mockMutex());
-    return mock() && mock()(request);
-}
 
 AllocationRequest requestOf(AllocationRequest::Kind kind, const osg::Texture& texture)
 {
@@ -58,11 +41,14 @@ void forget(osg::State& state, osg::Texture& texture)
         if (osg::BufferObject* buffer = image->getBufferObject()) buffer->releaseGLObjects(&state);
 }
 
-} // namespace
-
-bool allocate(const AllocationRequest& request, const std::function<void()>& make)
+// Calls what makes a texture's storage in the current context, and returns whether the card gave
+// it: cards refuse by a GL error, which is taken off, so that it is nobody else's. Errors of before
+// are taken off too.
+bool allocate(const osg::State& state, const AllocationRequest& request,
+              const std::function<void()>& make)
 {
-    if (isMockedAway(request)) return false;
+    const ContextHooks* hooks = ContextHooks::of(state);
+    if (hooks && hooks->refuses && hooks->refuses(request)) return false;
     discardErrors();
     make();
     const bool made = glGetError() == GL_NO_ERROR;
@@ -70,12 +56,14 @@ bool allocate(const AllocationRequest& request, const std::function<void()>& mak
     return made;
 }
 
+} // namespace
+
 bool allocateTarget(osg::State& state, osg::Texture& texture, const glm::ivec3& size)
 {
     AllocationRequest request;
     request.size = size;
     request.internalFormat = static_cast<GLenum>(texture.getInternalFormat());
-    const bool made = allocate(request, [&]() {
+    const bool made = allocate(state, request, [&]() {
         // Every brick applies its texture to this unit before it is drawn.
         state.setActiveTextureUnit(UNIT_VOXELS);
         texture.apply(state);
@@ -92,7 +80,7 @@ bool applyAllocated(osg::State& state, AllocationRequest::Kind kind, osg::Textur
         state.applyTextureAttribute(unit, &texture);
         return true;
     }
-    const bool made = allocate(requestOf(kind, texture), [&]() {
+    const bool made = allocate(state, requestOf(kind, texture), [&]() {
         state.setActiveTextureUnit(unit);
         texture.apply(state);
     });
@@ -103,12 +91,6 @@ bool applyAllocated(osg::State& state, AllocationRequest::Kind kind, osg::Textur
     forget(state, texture);
     state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
     return false;
-}
-
-void mockAllocation(std::function<bool(const AllocationRequest&)> isRefused)
-{
-    std::lock_guard<std::mutex> lock(mockMutex());
-    mock() = std::move(isRefused);
 }
 
 } // namespace render

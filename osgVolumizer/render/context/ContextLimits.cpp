@@ -1,9 +1,10 @@
 #include "ContextLimits.h"
 
+#include "ContextHooks.h"
+
 #include <osg/GLExtensions>
 
 #include <cstring>
-#include <mutex>
 
 namespace osgVolumizer {
 namespace render {
@@ -12,16 +13,10 @@ namespace {
 
 constexpr double NEEDED_VERSION = 3.3; // shaders, and what they fetch from
 
-std::mutex& mockMutex()
+void changeByHooks(ContextLimits& limits, const osg::State& state)
 {
-    static std::mutex mutex;
-    return mutex;
-}
-
-std::function<void(ContextLimits&)>& mock()
-{
-    static std::function<void(ContextLimits&)> change;
-    return change;
+    const ContextHooks* hooks = ContextHooks::of(state);
+    if (hooks && hooks->changeLimits) hooks->changeLimits(limits);
 }
 
 std::string oneDecimal(double value)
@@ -54,26 +49,18 @@ ContextLimits queryContextLimits(osg::State& state)
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits.texture3DSize);
     const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     limits.filtersFloatsBest = renderer && std::strstr(renderer, "llvmpipe");
-    std::lock_guard<std::mutex> lock(mockMutex());
-    if (mock()) mock()(limits);
+    changeByHooks(limits, state);
     return limits;
 }
 
-int texture3DSizeOf(unsigned contextId)
+int texture3DSizeOf(const osg::State& state)
 {
-    const osg::GLExtensions* gl = osg::GLExtensions::Get(contextId, false);
+    const osg::GLExtensions* gl = osg::GLExtensions::Get(state.getContextID(), false);
     if (!gl) return 0;
     ContextLimits limits;
     limits.texture3DSize = gl->maxTexture3DSize;
-    std::lock_guard<std::mutex> lock(mockMutex());
-    if (mock()) mock()(limits);
+    changeByHooks(limits, state);
     return limits.texture3DSize;
-}
-
-void mockContextLimits(std::function<void(ContextLimits&)> change)
-{
-    std::lock_guard<std::mutex> lock(mockMutex());
-    mock() = std::move(change);
 }
 
 } // namespace render

@@ -4,8 +4,6 @@
 
 #include <osg/State>
 
-#include <functional>
-
 namespace osgVolumizer {
 namespace render {
 
@@ -28,11 +26,7 @@ ContextLimits queryContextLimits(osg::State& state);
 
 /// Largest side of a 3D texture of a context, by what OSG knows of it, so in any thread; 0 where it
 /// does not yet.
-int texture3DSizeOf(unsigned contextId);
-
-/// For tests: what every context asked from now on is made to say instead; an empty function ends
-/// it. Contexts that have been asked before stay as they are.
-void mockContextLimits(std::function<void(ContextLimits&)> change);
+int texture3DSizeOf(const osg::State& state);
 
 } // namespace render
 } // namespace osgVolumizer

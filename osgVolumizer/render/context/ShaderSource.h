@@ -7,7 +7,8 @@
 namespace osgVolumizer {
 namespace render {
 
-/// The text of a file of shaders/, by its name; generated when the library is built.
+/// The text of a file by its path below shaders/, such as "rays/sum.glsl"; empty where there is
+/// none. Generated when the library is built.
 std::string shaderSource(const std::string& name);
 
 /// A shader of a header (version, defines) and code whose uniforms are renamed: see uniformName().

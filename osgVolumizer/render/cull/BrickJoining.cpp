@@ -8,14 +8,11 @@
 #include <osgUtil/CullVisitor>
 
 #include <algorithm>
-#include <atomic>
 
 namespace osgVolumizer {
 namespace render {
 
 namespace {
-
-std::atomic<bool> joins{true};
 
 // A texture for each brick lets a driver move those it does not need out of the graphics card's
 // memory; one for all does not.
@@ -48,7 +45,7 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, osgUtil::Cu
 {
     const ProgramFeatures& features = volume.look->features;
     const core::BrickLayout& layout = voxels.getLayout();
-    if (!joins || layout.brickCount() < 2 || volume.bricks.empty() || !features.slab ||
+    if (layout.brickCount() < 2 || volume.bricks.empty() || !features.slab ||
         !volume.prepared->voxelFrame ||
         volume.appearance->getCombineRule() == VolumeAppearance::PAINT)
         return false;
@@ -56,7 +53,7 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, osgUtil::Cu
     if (layout.overlap() < (features.cubic ? 3 : 1)) return false;
     const osg::State* state = visitor.getState();
     const glm::ivec3 size = voxels.getSize();
-    return state && std::max({size.x, size.y, size.z}) <= texture3DSizeOf(state->getContextID()) &&
+    return state && std::max({size.x, size.y, size.z}) <= texture3DSizeOf(*state) &&
            joinedBytes(voxels, features.gradientTexture) <= MAXIMUM_BYTES;
 }
 
@@ -128,11 +125,6 @@ std::shared_ptr<const BrickCells> joinCells(const VolumeInstance& volume, const 
 }
 
 } // namespace
-
-void setJoining(bool on)
-{
-    joins = on;
-}
 
 void joinBricks(VolumeInstance& volume, const Voxels& voxels, const OccupancyQuery& query,
                 const LeftOutBricks& leftOut, osgUtil::CullVisitor& visitor)

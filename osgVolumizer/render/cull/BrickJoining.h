@@ -25,8 +25,5 @@ struct LeftOutBricks
 void joinBricks(VolumeInstance& volume, const Voxels& voxels, const OccupancyQuery& query,
                 const LeftOutBricks& leftOut, osgUtil::CullVisitor& visitor);
 
-/// Whether bricks are joined at all; for tests and for measurements. On by default.
-void setJoining(bool on);
-
 } // namespace render
 } // namespace osgVolumizer

@@ -1,19 +1,17 @@
 #include "BrickSelection.h"
 
+#include "../draw/RayFunctions.h"
 #include "../textures/BrickResidency.h"
 #include "BrickJoining.h"
 
 #include <osgUtil/CullVisitor>
 
-#include <atomic>
 #include <cmath>
 
 namespace osgVolumizer {
 namespace render {
 
 namespace {
-
-std::atomic<bool> skips{true};
 
 osg::BoundingBox objectBounds(const core::Box3d& box, const glm::dmat4& frameToObject)
 {
@@ -31,14 +29,15 @@ OccupancyQuery queryOf(const VolumeInstance& volume, const Voxels& voxels)
     OccupancyQuery query;
     query.table = &volume.look->table;
     query.cubic = volume.look->features.cubic;
-    query.isosurface = volume.look->features.rayFunction == VolumeAppearance::ISOSURFACE;
+    query.isosurface = rowOf(volume.look->features.rayFunction).showsIsoValueOnly;
     query.isoFraction = (volume.appearance->getIsoValue() - range.x()) / (range.y() - range.x());
     return query;
 }
 
 // Cuts a brick down to where it shows something; false where that is nowhere.
 bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickResidency& textures,
-                   const OccupancyQuery& query, SelectedBrick& brick, LeftOutBricks& leftOut)
+                   const OccupancyQuery& query, bool skipping, SelectedBrick& brick,
+                   LeftOutBricks& leftOut)
 {
     if (voxels.getComponents() == 1) {
         const auto values = voxels.getBrickRange(brick.index);
@@ -49,7 +48,7 @@ bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickResidency&
             return false;
         }
     }
-    if (!volume.prepared->voxelFrame || !skips) return true;
+    if (!volume.prepared->voxelFrame || !skipping) return true;
     brick.cells = textures.cells().get(voxels, brick.index, query);
     if (!brick.cells) {
         leftOut.unreadable = true;
@@ -73,11 +72,6 @@ bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickResidency&
 
 } // namespace
 
-void setSkipping(bool on)
-{
-    skips = on;
-}
-
 bool isWorthSkipping(const VolumeInstance& volume)
 {
     // What it costs to look for the ends of a ray's occupied part, in samples.
@@ -89,7 +83,8 @@ bool isWorthSkipping(const VolumeInstance& volume)
     return emptyShare * boxEdge > COST * volume.look->voxelsPerSample;
 }
 
-void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
+void selectBricks(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& hooks,
+                  osgUtil::CullVisitor& visitor)
 {
     const core::BrickLayout& layout = voxels.getLayout();
     const osg::ref_ptr<BrickResidency> textures = BrickResidency::of(voxels);
@@ -113,7 +108,8 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVis
             if (visitor.isCulled(objectBounds(brick.box, prepared.frameToObject))) continue;
         }
         // Gathered rays count every value, shown or not.
-        if (!features.gathers() && !cutToOccupied(volume, voxels, *textures, query, brick, leftOut))
+        if (!features.gathers() &&
+            !cutToOccupied(volume, voxels, *textures, query, hooks.skipping, brick, leftOut))
             continue;
         brick.texels.texture = textures->get(voxels, i, features.gradientTexture, frame);
         brick.texels.voxels = &voxels;
@@ -124,7 +120,7 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVis
         else
             leftOut.unreadable = true;
     }
-    joinBricks(volume, voxels, query, leftOut, visitor);
+    if (hooks.joining) joinBricks(volume, voxels, query, leftOut, visitor);
 }
 
 } // namespace render

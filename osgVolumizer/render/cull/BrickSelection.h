@@ -1,5 +1,6 @@
 #pragma once
 
+#include "../context/ViewHooks.h"
 #include "../volume/VolumeInstance.h"
 
 namespace osgUtil {
@@ -12,10 +13,8 @@ namespace render {
 /// Appends the bricks that can show something: inside geometry and view, and not transparent
 /// throughout under the table; each cut down to the samples that are not. Reads no brick whose
 /// range tells that it shows nothing. Expects the volume's look.
-void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor);
-
-/// Whether parts of bricks that show nothing are left out; for tests and for tuning. On by default.
-void setSkipping(bool on);
+void selectBricks(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& hooks,
+                  osgUtil::CullVisitor& visitor);
 
 /// Whether so many cells of the selected bricks are empty that leaping over them pays.
 bool isWorthSkipping(const VolumeInstance& volume);

@@ -154,8 +154,10 @@ bool select(VolumeInstance& volume, osgUtil::CullVisitor& visitor)
 {
     const Voxels* voxels = volume.appearance->getVoxels();
     if (!voxels) return true;
-    selectBricks(volume, *voxels, visitor);
+    const ViewHooks& hooks = ViewHooks::of(visitor.getCurrentCamera());
+    selectBricks(volume, *voxels, hooks, visitor);
     volume.skipping = isWorthSkipping(volume);
+    volume.countSamples = volume.look->features.slab && hooks.countSamples;
     report(volume, *voxels, visitor);
     return !volume.bricks.empty();
 }

@@ -3,12 +3,14 @@
 #include "../../VolumeAppearance.h"
 
 #include <cstdint>
+#include <string>
 
 namespace osgVolumizer {
 namespace render {
 
-/// What a volume's shader has to do; nothing that is not asked for is compiled in.
-struct ProgramFeatures
+/// What a volume's shader is told to do, or left out of it. Each has a row in ProgramFeatures.cpp,
+/// which names what the shader finds defined.
+struct ProgramFlags
 {
     bool slab = true;              ///< march a segment per fragment, or shade one slice
     bool voxelCoordinates = false; ///< as a vertex attribute; else the frame is the voxel frame
@@ -16,7 +18,7 @@ struct ProgramFeatures
     bool voxels = true; ///< a brick texture
     bool rgba = false;  ///< voxels are colours, not values to look up
     bool opaqueDepth = false;
-    bool layerDepth = false; ///< surfaces split the segment; expects opaqueDepth
+    bool splitDepth = false; ///< surfaces split the segment; expects opaqueDepth
     bool ranked = false;    ///< the segment lies between two ranks of surfaces; expects opaqueDepth
     bool spherical = false; ///< slices are spheres about the eye
     bool exact = false;     ///< interpolate from fetched samples, in full precision
@@ -25,42 +27,33 @@ struct ProgramFeatures
     bool preIntegrated = false;          ///< look runs of values up
     bool shortRuns = false;              ///< look short runs up as single values
     bool smoothTable = false;            ///< interpolate between entries
-    VolumeAppearance::RayFunction rayFunction = VolumeAppearance::COMPOSITE;
     bool shading = false;
     bool gradientTexture = false; ///< brick textures hold gradients besides values
+    bool skipping = false;        ///< leap over cells that show nothing
+    bool countSamples = false;    ///< draw the number of samples: see ViewHooks
+};
+
+/// What a volume's shader has to do; nothing that is not asked for is compiled in.
+struct ProgramFeatures : ProgramFlags
+{
+    VolumeAppearance::RayFunction rayFunction = VolumeAppearance::COMPOSITE;
     /// Slots of captured surfaces that are composited while marching, over all pixels of an area;
     /// multiple of 4. Expects opaqueDepth, one brick, and the whole depth of the volume.
     int slotCount = 0;
-    bool skipping = false;     ///< leap over cells that show nothing
-    bool countSamples = false; ///< draw the number of samples: see setSampleCounting()
-    int paintCount = 0;        ///< bricks of volumes that paint this one; no more than 4
-    int planeCount = 0;        ///< half-spaces that end the segment, besides the clip box
+    int paintCount = 0; ///< bricks of volumes that paint this one; no more than 4
+    int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
 
     /// Whether surfaces are sorted before the volume, whose shader reads them.
     bool needsSortedSurfaces() const { return ranked || slotCount > 0; }
 
-    /// Whether the rays' values are gathered in a target of their own, and drawn as one layer.
-    bool gathers() const
-    {
-        return rayFunction != VolumeAppearance::COMPOSITE &&
-               rayFunction != VolumeAppearance::ISOSURFACE;
-    }
+    /// Whether the rays' values are gathered in a target of their own, and drawn at once, at one depth.
+    bool gathers() const;
 
     /// Different for different features.
-    std::uint64_t key() const
-    {
-        std::uint64_t result = static_cast<std::uint64_t>(planeCount) << 3;
-        result = (result | static_cast<std::uint64_t>(slotCount / 4)) << 3;
-        result = (result | static_cast<std::uint64_t>(paintCount)) << 3 |
-                 static_cast<std::uint64_t>(rayFunction);
-        for (bool flag :
-             {slab,       voxelCoordinates, vertexColors, voxels,      rgba,    opaqueDepth,
-              layerDepth, ranked,           spherical,    exact,       nearest, cubic,
-              before,     preIntegrated,    shortRuns,    smoothTable, shading, gradientTexture,
-              skipping,   countSamples})
-            result = result << 1 | std::uint64_t(flag);
-        return result;
-    }
+    std::uint64_t key() const;
+
+    /// The lines that define, for GLSL, all that is on.
+    std::string defines() const;
 };
 
 } // namespace render

@@ -6,6 +6,7 @@
 #include "../context/ScreenPass.h"
 #include "../context/Uniforms.h"
 #include "RayBuffers.h"
+#include "RayFunctions.h"
 #include "VolumeProgram.h"
 
 #include <osg/BlendEquation>
@@ -57,20 +58,17 @@ RayTarget::RayTarget(osg::State& state, ContextResources& resources,
     }
     _gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, _resources.part<RayBuffers>().framebuffer);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    const bool sums = _features.rayFunction == VolumeAppearance::AVERAGE ||
-                      _features.rayFunction == VolumeAppearance::SUM;
-    const bool highest = _features.rayFunction == VolumeAppearance::MAXIMUM;
-    const float empty = sums ? 0.0f : highest ? -3e38f : 3e38f;
+    const RayFunctionRow& row = rowOf(_features.rayFunction);
     GLfloat clearColor[4];
     glGetFloatv(GL_COLOR_CLEAR_VALUE, clearColor);
     const GLboolean scissor = glIsEnabled(GL_SCISSOR_TEST);
     glDisable(GL_SCISSOR_TEST);
-    glClearColor(empty, empty, empty, empty);
+    glClearColor(row.emptyValue, row.emptyValue, row.emptyValue, row.emptyValue);
     glClear(GL_COLOR_BUFFER_BIT);
     glClearColor(clearColor[0], clearColor[1], clearColor[2], clearColor[3]);
     setEnabled(GL_SCISSOR_TEST, scissor);
     glEnable(GL_BLEND);
-    _gl.glBlendEquation(sums ? GL_FUNC_ADD : highest ? GL_MAX : GL_MIN);
+    _gl.glBlendEquation(row.blendEquation);
     glBlendFunc(GL_ONE, GL_ONE);
 }
 
@@ -84,7 +82,7 @@ void RayTarget::resolve(const VolumeLook& look)
     glColorMask(_colorMask[0], _colorMask[1], _colorMask[2], _colorMask[3]);
     osg::ref_ptr<osg::Program>& resolving =
         _resources.part<RayBuffers>().programs[{_features.rayFunction, _features.rgba}];
-    if (!resolving) resolving = makeResolveProgram(_features);
+    if (!resolving) resolving = makeResolveProgram(_features.rayFunction, _features.rgba);
     _state.applyAttribute(resolving.get());
     const auto* program = _state.getLastAppliedProgramObject();
     if (!program) return;

@@ -5,6 +5,7 @@
 #include "../context/SharedStateSets.h"
 #include "../context/Uniforms.h"
 #include "Paint.h"
+#include "RayFunctions.h"
 
 #include <osg/AlphaFunc>
 #include <osg/BlendEquation>
@@ -14,67 +15,30 @@
 #include <osg/PolygonMode>
 #include <osg/Program>
 
-#include <atomic>
-
 namespace osgVolumizer {
 namespace render {
 
 namespace {
 
-std::string header(const ProgramFeatures& features)
-{
-    std::string text = "#version 330\n";
-    const auto define = [&text](bool on, const char* name) {
-        if (on) text += std::string("#define ") + name + "\n";
-    };
-    define(features.voxelCoordinates, "VOXEL_COORDINATES");
-    define(features.vertexColors, "VERTEX_COLORS");
-    define(features.voxels, "VOXELS");
-    define(features.rgba, "RGBA");
-    define(features.opaqueDepth, "OPAQUE_DEPTH");
-    define(features.layerDepth, "LAYER_DEPTH");
-    define(features.ranked, "RANKED");
-    define(features.spherical, "SPHERICAL");
-    define(features.exact, "EXACT");
-    define(features.nearest, "NEAREST");
-    define(features.cubic, "CUBIC");
-    define(features.before, "BEFORE");
-    define(features.preIntegrated, "PREINTEGRATED");
-    static const char* const functions[] = {"COMPOSITE", "MAXIMUM", "MINIMUM",
-                                            "AVERAGE",   "SUM",     "ISOSURFACE"};
-    define(true, functions[features.rayFunction]);
-    define(features.paintCount > 0, "PAINTED");
-    if (features.slotCount > 0)
-        text += "#define SLOTS " + std::to_string(features.slotCount) + "\n";
-    define(features.shading, "SHADING");
-    define(features.gradientTexture, "GRADIENT_TEXTURE");
-    define(features.shortRuns, "SHORT_RUNS");
-    define(features.skipping, "SKIPPING");
-    define(features.countSamples, "COUNT_SAMPLES");
-    define(features.smoothTable, "SMOOTH_TABLE");
-    define(features.exact || features.nearest || features.cubic || features.before, "FETCH");
-    text += "#define PLANES " + std::to_string(features.planeCount) + "\n";
-    return text;
-}
+constexpr char VERSION[] = "#version 330\n";
 
 osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
 {
     const std::string kind = features.slab ? "slab" : "slice";
+    const std::string header =
+        VERSION + features.defines() + (features.slab ? "" : "#define SLICE\n");
     osg::ref_ptr<osg::Program> result = new osg::Program;
     result->setName("osgVolumizer " + kind);
-    result->addShader(
-        makeShader(osg::Shader::VERTEX, header(features), shaderSource(kind + ".vert.glsl")));
+    result->addShader(makeShader(osg::Shader::VERTEX, header, shaderSource(kind + ".vert.glsl")));
     std::string fragment;
     for (const char* file : {"voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl",
                              "skipping.glsl", "segment.glsl"})
         fragment += shaderSource(file);
     if (features.paintCount > 0) fragment += paintSource(features.paintCount);
-    fragment += shaderSource(kind + ".frag.glsl");
-    result->addShader(makeShader(osg::Shader::FRAGMENT, header(features), fragment));
+    fragment += shaderSource(kind + ".frag.glsl") + rayShaderSource(features.rayFunction);
+    result->addShader(makeShader(osg::Shader::FRAGMENT, header, fragment));
     return result;
 }
-
-std::atomic<bool> countsSamples{false};
 
 // What holds against states above that override.
 constexpr unsigned KEPT = osg::StateAttribute::ON | osg::StateAttribute::PROTECTED;
@@ -120,7 +84,7 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     set->addUniform(new osg::Uniform(uniformName("voxels").c_str(), int(UNIT_VOXELS)));
     set->addUniform(new osg::Uniform(uniformName("lookupTable").c_str(), int(UNIT_TABLE)));
     set->addUniform(new osg::Uniform(uniformName("opaqueDepth").c_str(), int(UNIT_OPAQUE_DEPTH)));
-    set->addUniform(new osg::Uniform(uniformName("layerDepth").c_str(), int(UNIT_SPLIT_DEPTH)));
+    set->addUniform(new osg::Uniform(uniformName("splitDepth").c_str(), int(UNIT_SPLIT_DEPTH)));
     set->addUniform(new osg::Uniform(uniformName("sortedSlots").c_str(), int(UNIT_SORTED_FAR)));
     set->addUniform(new osg::Uniform(uniformName("slotColors").c_str(), int(UNIT_SORTED_NEAR)));
     set->addUniform(new osg::Uniform(uniformName("sortedFar").c_str(), int(UNIT_SORTED_FAR)));
@@ -131,16 +95,6 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
 }
 
 } // namespace
-
-void setSampleCounting(bool on)
-{
-    countsSamples = on;
-}
-
-bool sampleCounting()
-{
-    return countsSamples;
-}
 
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
 {
@@ -156,14 +110,15 @@ osg::ref_ptr<osg::StateSet> depthTestStateSet(const DepthTest& test)
     return set;
 }
 
-osg::ref_ptr<osg::Program> makeResolveProgram(const ProgramFeatures& features)
+osg::ref_ptr<osg::Program> makeResolveProgram(VolumeAppearance::RayFunction function, bool rgba)
 {
+    const std::string header =
+        std::string(VERSION) + "#define RESOLVE\n" + (rgba ? "#define RGBA\n" : "");
     osg::ref_ptr<osg::Program> result = new osg::Program;
     result->setName("osgVolumizer resolve");
-    result->addShader(
-        makeShader(osg::Shader::VERTEX, header(features), shaderSource("screen.vert.glsl")));
-    result->addShader(
-        makeShader(osg::Shader::FRAGMENT, header(features), shaderSource("resolve.frag.glsl")));
+    result->addShader(makeShader(osg::Shader::VERTEX, header, shaderSource("screen.vert.glsl")));
+    result->addShader(makeShader(osg::Shader::FRAGMENT, header,
+                                 shaderSource("resolve.frag.glsl") + rayShaderSource(function)));
     return result;
 }
 

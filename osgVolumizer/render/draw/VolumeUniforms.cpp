@@ -71,7 +71,7 @@ void setSegment(const Uniforms& uniforms, const VolumePart& part)
     const VolumeLook& look = *part.look;
     uniforms.set("stepsPerDepth", static_cast<float>(1.0 / part.step));
     uniforms.set("maximumSteps", static_cast<float>(look.maximumSteps));
-    if (part.features.layerDepth) uniforms.set("inFrontOfLayer", part.inFrontOfSplit ? 1 : 0);
+    if (part.features.splitDepth) uniforms.set("inFrontOfSplit", part.inFrontOfSplit ? 1 : 0);
     if (part.features.ranked) uniforms.set("rank", part.rank);
     uniforms.set("regionMin", look.regionMin);
     uniforms.set("regionMax", look.regionMax);
@@ -96,7 +96,7 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
     uniforms.set("depthRange", depthRange(test));
     if (!buffers.opaqueDepth) return;
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, buffers.opaqueDepth.get());
-    if (part.features.layerDepth)
+    if (part.features.splitDepth)
         state.applyTextureAttribute(UNIT_SPLIT_DEPTH, buffers.splitDepth.get());
     if (part.features.needsSortedSurfaces() && buffers.sortedSurfaces[0]) {
         state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.sortedSurfaces[0].get());

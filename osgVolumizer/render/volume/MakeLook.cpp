@@ -2,7 +2,7 @@
 
 #include "../context/Matrices.h"
 #include "../context/ReportOnce.h"
-#include "../draw/VolumeProgram.h"
+#include "../draw/RayFunctions.h"
 
 #include <osgUtil/CullVisitor>
 
@@ -55,18 +55,21 @@ VolumeAppearance::RayFunction usedRayFunction(const VolumeAppearance& appearance
 {
     const auto asked = appearance.getRayFunction();
     const Voxels* voxels = appearance.getVoxels();
-    if (!voxels || asked == VolumeAppearance::COMPOSITE) return VolumeAppearance::COMPOSITE;
-    const bool extreme = asked == VolumeAppearance::MAXIMUM || asked == VolumeAppearance::MINIMUM;
-    if (voxels->getComponents() != 1 && !extreme) {
+    if (!voxels) return VolumeAppearance::COMPOSITE;
+    const RayFunctionRow& row = rowOf(asked);
+    const auto nameOf = [](VolumeAppearance::RayFunction function) {
+        return std::string("ray function ") + VolumeAppearance::RAY_FUNCTION_NAMES[function];
+    };
+    if (row.needsOneComponent && voxels->getComponents() != 1) {
         reportUnsupported(appearance,
-                          "averages, sums and isosurfaces need voxels of one component, "
-                          "but these have " +
+                          nameOf(asked) + " needs voxels of one component, but these have " +
                               std::to_string(voxels->getComponents()) + "; they are composited");
         return VolumeAppearance::COMPOSITE;
     }
-    if (asked == VolumeAppearance::ISOSURFACE && !usesSlabs(appearance, prepared)) {
-        reportUnsupported(appearance, "isosurfaces need slabs, and so a convex region in one voxel "
-                                      "frame; the volume is composited");
+    if (row.needsSlabs && !usesSlabs(appearance, prepared)) {
+        reportUnsupported(appearance, nameOf(asked) +
+                                          " needs slabs, and so a convex region in one voxel "
+                                          "frame; the volume is composited");
         return VolumeAppearance::COMPOSITE;
     }
     return asked;
@@ -77,8 +80,7 @@ bool usesShading(const VolumeAppearance& appearance, const PreparedGeometry& pre
 {
     const Voxels* voxels = appearance.getVoxels();
     if (!appearance.getShading() || !voxels) return false;
-    if (function != VolumeAppearance::COMPOSITE && function != VolumeAppearance::ISOSURFACE)
-        return false;
+    if (rowOf(function).gathers) return false; // values have no colour yet
     if (!prepared.voxelFrame) {
         reportUnsupported(appearance,
                           "shading needs one affine map to the voxel frame; the deformed "
@@ -181,7 +183,7 @@ void setInterpolation(const VolumeAppearance& appearance, const TableTexture& ta
     features.cubic = interpolation == VolumeAppearance::CUBIC;
     features.exact = interpolation == VolumeAppearance::LINEAR && appearance.getExactFiltering();
     // Of nearest samples the two orders give the same.
-    features.before = features.rayFunction == VolumeAppearance::COMPOSITE && !features.nearest &&
+    features.before = rowOf(features.rayFunction).integratesLight && !features.nearest &&
                       appearance.getLookup() == VolumeAppearance::BEFORE_INTERPOLATION;
     features.preIntegrated = table.integrals;
     features.shortRuns = table.integrals && table.shortRuns;
@@ -200,7 +202,6 @@ void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& pre
     features.voxelCoordinates = !features.slab && voxels && !prepared.voxelFrame;
     features.vertexColors = prepared.tetras.vertices.format().colorSize > 0;
     features.opaqueDepth = features.slab;
-    features.countSamples = features.slab && sampleCounting();
     features.rayFunction = usedRayFunction(appearance, prepared);
     features.shading = usesShading(appearance, prepared, features.rayFunction);
     features.gradientTexture = features.shading && !features.rgba &&
@@ -229,7 +230,7 @@ VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
     // deformed volume do not know.
     const bool runs = prepared.voxelFrame && appearance.getVoxels()->getComponents() == 1 &&
                       appearance.getInterpolation() != VolumeAppearance::NEAREST &&
-                      usedRayFunction(appearance, prepared) == VolumeAppearance::COMPOSITE;
+                      rowOf(usedRayFunction(appearance, prepared)).integratesLight;
     return runs ? appearance.getLookup() : VolumeAppearance::AFTER_INTERPOLATION;
 }
 
@@ -237,7 +238,7 @@ bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry
 {
     const auto function = usedRayFunction(appearance, prepared);
     if (usesSlabs(appearance, prepared) && appearance.getVoxels()->getComponents() == 1 &&
-        function == VolumeAppearance::COMPOSITE && !usesShading(appearance, prepared, function) &&
+        rowOf(function).integratesLight && !usesShading(appearance, prepared, function) &&
         appearance.getLookup() != VolumeAppearance::BEFORE_INTERPOLATION)
         return true;
     reportUnsupported(appearance,

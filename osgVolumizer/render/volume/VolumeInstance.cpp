@@ -92,6 +92,7 @@ VolumePart partOf(const VolumeInstance& volume)
     part.above = volume.above;
     part.features = volume.look->features;
     part.features.skipping = volume.skipping;
+    part.features.countSamples = volume.countSamples;
     part.features.paintCount = volume.paints ? static_cast<int>(volume.paints->size()) : 0;
     part.step = volume.look->step;
     return part;

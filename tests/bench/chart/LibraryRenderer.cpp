@@ -3,7 +3,7 @@
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/VolumeGeometry.h>
 
-#include <support/JoiningScope.h>
+#include <support/Hooks.h>
 
 namespace osgVolumizer {
 namespace bench {
@@ -53,7 +53,8 @@ public:
         _appearance->setShading(scene.shaded);
         support::RenderOptions options = scene.view;
         options.light = scene.shaded;
-        _renderer = std::make_unique<support::SceneRenderer>(_appearance, options);
+        _renderer = std::make_unique<support::SceneRenderer>(
+            _appearance, support::joining(options, _options.joined));
         _renderer->viewer().getCamera()->getStats()->collectStats("rendering", true);
         _renderer->viewer().getViewerStats()->collectStats("update", true);
         return _renderer->status();
@@ -63,16 +64,8 @@ public:
         if (_options.tolerance) return _appearance->setErrorTolerance(1e-3 * stepVoxel);
         return _appearance->setSamplingPeriod(osg::Vec3d(stepVoxel, stepVoxel, stepVoxel));
     }
-    void frame() override
-    {
-        const support::JoiningScope scope(_options.joined);
-        _renderer->viewer().frame();
-    }
-    support::FloatImage picture() override
-    {
-        const support::JoiningScope scope(_options.joined);
-        return _renderer->render();
-    }
+    void frame() override { _renderer->viewer().frame(); }
+    support::FloatImage picture() override { return _renderer->render(); }
     std::map<std::string, double> split() override
     {
         std::map<std::string, double> result = _renderer->counters();

@@ -6,6 +6,9 @@ out vec4 fragColor;
 uniform samplerBuffer lookupTable;
 uniform vec2 valueToEntry;
 uniform float lastEntry;
+
+// The entry of the table for what the ray function gathered; discards where that is nothing.
+float gatheredEntry(vec4 ray);
 #endif
 
 void main()
@@ -15,16 +18,7 @@ void main()
 #ifdef RGBA
     fragColor = ray;
 #else
-#if defined(AVERAGE) || defined(SUM)
-    if (!(ray.y > 0.0)) discard;
-#endif
-#if defined(SUM)
-    float entry = ray.x * valueToEntry.x + ray.y * valueToEntry.y;
-#elif defined(AVERAGE)
-    float entry = ray.x / ray.y * valueToEntry.x + valueToEntry.y;
-#else
-    float entry = ray.x * valueToEntry.x + valueToEntry.y;
-#endif
+    float entry = gatheredEntry(ray);
     float held = clamp(entry, 0.0, lastEntry);
     int low = int(held);
     vec4 c = mix(texelFetch(lookupTable, low), texelFetch(lookupTable, low + 1), fract(held));

@@ -27,9 +27,9 @@ uniform int opaqueRule;   // 0: nothing to end at; 1: segments end there; 2: the
 uniform vec2 depthRange;  // nearest window depth of the volume, and 1 over the length of its range
 uniform vec3 clipZOrigin, clipZDirection, clipWOrigin, clipWDirection; // times (dx, dy, 1)
 #endif
-#ifdef LAYER_DEPTH
-uniform sampler2D layerDepth; // of the surfaces that split this segment
-uniform bool inFrontOfLayer;  // which part is drawn
+#ifdef SPLIT_DEPTH
+uniform sampler2D splitDepth; // of the surfaces that split this segment
+uniform bool inFrontOfSplit;  // which part is drawn
 #endif
 
 #ifdef RANKED
@@ -61,7 +61,7 @@ float opaqueOnRay()
     return z < 1.0 ? rayAt(max(z, 0.0)) : 1e30;
 }
 
-#ifdef LAYER_DEPTH
+#ifdef SPLIT_DEPTH
 // Where the ray meets what left its depth in a buffer; far away where nothing did.
 float depthOnRay(sampler2D depths)
 {
@@ -104,251 +104,10 @@ float sampleCount = 0.0;
 #define COUNT_SAMPLE
 #endif
 
-// In the loops below the place is advanced by the last statement, and what ends them early is in the condition:
-// either saves a third of the time on llvmpipe. Steps that meet nothing are left out whole.
-
-#if defined(MAXIMUM) || defined(MINIMUM)
-#ifdef MAXIMUM
-#define BETTER(a, b) max(a, b)
-#else
-#define BETTER(a, b) min(a, b)
-#endif
-
-#ifdef RGBA
-// Highest or lowest premultiplied components on the brick's part of the segment, ends included.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
-{
-    tNear = max(tNear, brick.x);
-    tFar = min(tFar, brick.y);
-    float count = stepsOf(tNear, tFar);
-    vec3 place = placeOf(origin + direction * tNear);
-    vec3 rate = VOXEL_LENGTH * direction * ((tFar - tNear) / count);
-    vec4 texel = voxelAt(place);
-    vec4 best = vec4(texel.rgb * texel.a, texel.a);
-    place += rate;
-    for (int i = int(count); i > 0; --i) {
-        texel = voxelAt(place);
-        best = BETTER(best, vec4(texel.rgb * texel.a, texel.a));
-        COUNT_SAMPLE
-        place += rate;
-    }
-    return best;
-}
-#else
-// Highest or lowest value on the brick's part of the segment, ends included. Between samples the extreme is looked
-// for about the best one, by halving: an interpolant has kinks, which would make plain sampling first order.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
-{
-    tNear = max(tNear, brick.x);
-    tFar = min(tFar, brick.y);
-    float count = stepsOf(tNear, tFar);
-    vec3 start = placeOf(origin + direction * tNear);
-    vec3 rate = VOXEL_LENGTH * direction * ((tFar - tNear) / count);
-    vec3 place = start + rate;
-    float best = voxelAt(start), at = 0.0;
-    int steps = int(count);
-    for (int i = 1; i <= steps; ++i) {
-        float value = voxelAt(place);
-        at = BETTER(value, best) != best ? float(i) : at;
-        best = BETTER(value, best);
-        COUNT_SAMPLE
-        place += rate;
-    }
-    float reach = 0.5;
-    for (int i = 0; i < 5; ++i) {
-        float before = max(at - reach, 0.0), after = min(at + reach, count);
-        float low = voxelAt(start + before * rate), high = voxelAt(start + after * rate);
-        float better = BETTER(low, high);
-        if (BETTER(better, best) != best) at = better == low ? before : after;
-        best = BETTER(better, best);
-        reach *= 0.5;
-    }
-    return vec4(best);
-}
-#endif
-
-#elif defined(AVERAGE) || defined(SUM)
-// Integral of the value over the brick's steps, and of 1.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
-{
-    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
-    float first = max(0.0, ceil((brick.x - tNear) / dt - 0.5));
-    int steps = int(min(count, ceil((brick.y - tNear) / dt - 0.5)) - first);
-    vec3 place = placeOf(origin + direction * (tNear + (first + 0.5) * dt));
-    vec3 rate = VOXEL_LENGTH * direction * dt;
-    float sum = 0.0;
-    for (int i = 0; i < steps; ++i) {
-        sum += voxelAt(place);
-        COUNT_SAMPLE
-        place += rate;
-    }
-    float stepUnits = dt * length(frameToUnits * direction);
-    return vec4(sum * stepUnits, float(max(steps, 0)) * stepUnits, 0.0, 0.0);
-}
-
-#elif defined(ISOSURFACE)
-uniform float isoTexel;
-
-float overIso(vec3 place) { return voxelAt(place) - isoTexel; }
-
-// Root between t0 and t1, where the function has other signs: false position, Illinois variant (Dowell and
-// Jarratt, "A modified regula falsi method", BIT 11, 1971).
-float rootBetween(vec3 start, vec3 rate, float t0, float f0, float t1, float f1)
-{
-    for (int i = 0; i < 8 && f1 != 0.0; ++i) {
-        float t = t1 - f1 * (t1 - t0) / (f1 - f0);
-        float f = overIso(start + t * rate);
-        if (f * f1 < 0.0) {
-            t0 = t1;
-            f0 = f1;
-        } else {
-            f0 *= 0.5;
-        }
-        t1 = t;
-        f1 = f;
-    }
-    return t1;
-}
-
-// The first crossing of the iso-value, opaque.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
-{
-    tNear = max(tNear, brick.x);
-    tFar = min(tFar, brick.y);
-    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
-    vec3 start = placeOf(origin + direction * tNear), rate = VOXEL_LENGTH * direction * dt;
-    float i = 0.0, last = count;
-#ifdef SKIPPING
-    vec2 shown = occupiedPart(origin, direction, tNear, tFar);
-    i = max(i, floor((shown.x - tNear) / dt));
-    last = min(last, ceil((shown.y - tNear) / dt));
-#endif
-    vec3 place = start + i * rate;
-    float before = overIso(place), after = before;
-    place += rate;
-    for (; i < last && (before < 0.0) == (after < 0.0); i += 1.0) {
-        before = after;
-        after = overIso(place);
-        COUNT_SAMPLE
-        place += rate;
-    }
-    if ((before < 0.0) == (after < 0.0)) return vec4(0.0);
-    float at = rootBetween(start, rate, i - 1.0, before, i, after);
-    vec4 color = vec4(classifyTexel(isoTexel).rgb, 1.0);
-#ifdef SHADING
-    color = lit(color, start + at * rate, tNear + at * dt);
-#endif
-#ifdef PAINTED
-    color.rgb = painted(color.rgb, origin + (tNear + at * dt) * direction);
-#endif
-    return color;
-}
-
-#elif defined(PREINTEGRATED)
-uniform bool homogeneous;           // all of the brick has one value
-uniform vec3 brickMin, brickMax; // what the brick's texture has values for
-
-// Adds the piece of the ray from the last place to this one, where the depth is t.
-void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float unitsPerDepth,
-            inout float entry, inout vec4 integral, inout vec4 light)
-{
-    float nextEntry = tableEntryAfter(entry, place);
-    vec4 nextIntegral = tableIntegral(nextEntry);
-    vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
-#ifdef SHADING
-    c = lit(c, place - 0.5 * depth * VOXEL_LENGTH * direction, t - 0.5 * depth);
-#endif
-#ifdef PAINTED
-    c.rgb = painted(c.rgb, origin + (t - 0.5 * depth) * direction);
-#endif
-    COUNT_SAMPLE
-    float next = light.a * exp2(-c.a * (depth * unitsPerDepth));
-    light = vec4(light.rgb + (light.a - next) * c.rgb, next);
-    entry = nextEntry;
-    integral = nextIntegral;
-}
-
-// Light of the steps that reach into what the brick shows, front to back: premultiplied colour, opacity. The ends
-// of steps are where the table is asked, so steps are cut at the brick's ends.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
-{
-    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
-    vec2 brick = boxSegment(brickMin, brickMax, origin, direction);
-    float start = max(tNear, brick.x), stop = min(tFar, brick.y);
-#ifdef SKIPPING
-    shown = occupiedPart(origin, direction, max(start, shown.x), min(stop, shown.y));
-#endif
-    float i = max(0.0, floor((shown.x - tNear) / dt));
-    float last = min(count, ceil((shown.y - tNear) / dt));
-    float unitsPerDepth = length(frameToUnits * direction);
-    vec3 rate = VOXEL_LENGTH * direction;
-    vec4 light = vec4(0.0, 0.0, 0.0, 1.0); // colour, transmittance
-    if (homogeneous && i < last) {
-        // One step from end to end.
-        float end = min(stop, tNear + last * dt);
-        tNear = max(start, tNear + i * dt);
-        dt = end - tNear;
-        i = 0.0;
-        last = 1.0;
-    }
-    float t = max(start, tNear + i * dt);
-    vec3 place = placeOf(origin + t * direction);
-    float entry = tableEntry(place);
-    vec4 integral = tableIntegral(entry);
-    float depth = min(stop, tNear + (i + 1.0) * dt) - t; // of the first step, which may be cut
-    place += rate * depth;
-    t += depth;
-    for (int steps = int(last - i); steps > 0 && light.a > OPAQUE_ENOUGH; --steps) {
-        addRun(origin, direction, t, place, depth, unitsPerDepth, entry, integral, light);
-        depth = min(dt, stop - t); // of the last one, which may be cut too
-        t += depth;
-        place += rate * depth;
-    }
-    return vec4(light.rgb, 1.0 - light.a);
-}
-
-#else
-uniform bool homogeneous; // all of the brick has one value
-
-// Light of the brick's steps, front to back: premultiplied colour, opacity.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
-{
-    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
-#ifdef SKIPPING
-    brick = occupiedPart(origin, direction, max(tNear, brick.x), min(tFar, brick.y));
-#endif
-    float perDepth = count / (tFar - tNear);
-    float i = max(0.0, ceil((brick.x - tNear) * perDepth - 0.5));
-    float last = min(count, ceil((brick.y - tNear) * perDepth - 0.5)); // not one of the brick's
-    vec3 rate = VOXEL_LENGTH * direction * dt;
-    float units = dt * length(frameToUnits * direction);
-    vec3 color = vec3(0.0);
-    float transmittance = 1.0;
-    if (homogeneous && i < last) {
-        units *= last - i;
-        last = i + 1.0;
-    }
-    float t = tNear + (i + 0.5) * dt;
-    vec3 place = placeOf(origin + t * direction);
-    int steps = int(last - i);
-    if (steps > 0) do {
-        vec4 c = classify(place);
-#ifdef SHADING
-        c = lit(c, place, t);
-#endif
-#ifdef PAINTED
-        c.rgb = painted(c.rgb, origin + t * direction);
-#endif
-        t += dt;
-        COUNT_SAMPLE
-        float next = transmittance * exp2(-c.a * units);
-        color += (transmittance - next) * c.rgb;
-        transmittance = next;
-        place += rate;
-    } while (--steps > 0 && transmittance > OPAQUE_ENOUGH);
-    return vec4(color, 1.0 - transmittance);
-}
-#endif
+// What the ray function makes of the part of the segment in the brick (both in t). In its loops the place is advanced
+// by the last statement, and what ends them early is in the condition: either saves a third of the time on llvmpipe.
+// Steps that meet nothing are left out whole.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick);
 
 // Light of a segment. Colours jump where paint begins, so its parts end there.
 vec4 light(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
@@ -410,12 +169,12 @@ void main()
     if (opaqueRule == 1) tFar = min(tFar, opaqueOnRay());
     if (opaqueRule == 2) tNear = max(tNear, opaqueOnRay());
 #endif
-#ifdef LAYER_DEPTH
-    float tLayer = depthOnRay(layerDepth);
-    if (!inFrontOfLayer && tLayer < 1e29)
-        tNear = max(tNear, tLayer);
-    else if (inFrontOfLayer)
-        tFar = tLayer < 1e29 ? min(tFar, tLayer) : tNear;
+#ifdef SPLIT_DEPTH
+    float tSplit = depthOnRay(splitDepth);
+    if (!inFrontOfSplit && tSplit < 1e29)
+        tNear = max(tNear, tSplit);
+    else if (inFrontOfSplit)
+        tFar = tSplit < 1e29 ? min(tFar, tSplit) : tNear;
 #endif
 #ifdef RANKED
     float nearer = sortedDepth(rank), farther = sortedDepth(rank - 1);

@@ -22,7 +22,7 @@ IntervalSurfaces::IntervalSurfaces(const MergedGroup& group, const MergeRegion& 
         _whole.push_back(group.partIn(region, volume));
         for (std::vector<VolumePart>* parts : {&_behind, &_inFront}) {
             parts->push_back(_whole.back());
-            parts->back().features.layerDepth = true;
+            parts->back().features.splitDepth = true;
             parts->back().inFrontOfSplit = parts == &_inFront;
         }
     }

@@ -1,0 +1,77 @@
+#include "ProgramFeatures.h"
+
+#include "RayFunctions.h"
+
+#include <iterator>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+struct Flag
+{
+    bool ProgramFlags::*member;
+    const char* define;
+};
+
+constexpr Flag FLAGS[] = {
+    {&ProgramFlags::slab, "SLAB"},
+    {&ProgramFlags::voxelCoordinates, "VOXEL_COORDINATES"},
+    {&ProgramFlags::vertexColors, "VERTEX_COLORS"},
+    {&ProgramFlags::voxels, "VOXELS"},
+    {&ProgramFlags::rgba, "RGBA"},
+    {&ProgramFlags::opaqueDepth, "OPAQUE_DEPTH"},
+    {&ProgramFlags::splitDepth, "SPLIT_DEPTH"},
+    {&ProgramFlags::ranked, "RANKED"},
+    {&ProgramFlags::spherical, "SPHERICAL"},
+    {&ProgramFlags::exact, "EXACT"},
+    {&ProgramFlags::nearest, "NEAREST"},
+    {&ProgramFlags::cubic, "CUBIC"},
+    {&ProgramFlags::before, "BEFORE"},
+    {&ProgramFlags::preIntegrated, "PREINTEGRATED"},
+    {&ProgramFlags::shortRuns, "SHORT_RUNS"},
+    {&ProgramFlags::smoothTable, "SMOOTH_TABLE"},
+    {&ProgramFlags::shading, "SHADING"},
+    {&ProgramFlags::gradientTexture, "GRADIENT_TEXTURE"},
+    {&ProgramFlags::skipping, "SKIPPING"},
+    {&ProgramFlags::countSamples, "COUNT_SAMPLES"},
+};
+// A flag without a row would be missing in the key, and programs would be taken for one another.
+static_assert(sizeof(ProgramFlags) == sizeof(bool) * std::size(FLAGS), "a row for each flag");
+
+} // namespace
+
+bool ProgramFeatures::gathers() const
+{
+    return rowOf(rayFunction).gathers;
+}
+
+std::uint64_t ProgramFeatures::key() const
+{
+    std::uint64_t result = static_cast<std::uint64_t>(planeCount);
+    result = result << 3 | static_cast<std::uint64_t>(slotCount / 4);
+    result = result << 3 | static_cast<std::uint64_t>(paintCount);
+    result = result << 8 | static_cast<std::uint64_t>(rayFunction);
+    for (const Flag& flag : FLAGS)
+        result = result << 1 | std::uint64_t(this->*flag.member);
+    return result;
+}
+
+std::string ProgramFeatures::defines() const
+{
+    std::string text;
+    const auto define = [&text](bool on, const std::string& name) {
+        if (on) text += "#define " + name + "\n";
+    };
+    for (const Flag& flag : FLAGS)
+        define(this->*flag.member, flag.define);
+    define(exact || nearest || cubic || before, "FETCH");
+    define(paintCount > 0, "PAINTED");
+    define(slotCount > 0, "SLOTS " + std::to_string(slotCount));
+    define(true, "PLANES " + std::to_string(planeCount));
+    return text;
+}
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,141 @@
+// Light emitted and absorbed along the ray.
+
+#if defined(SLAB) && defined(PREINTEGRATED)
+uniform bool homogeneous;           // all of the brick has one value
+uniform vec3 brickMin, brickMax; // what the brick's texture has values for
+
+// Adds the piece of the ray from the last place to this one, where the depth is t.
+void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float unitsPerDepth,
+            inout float entry, inout vec4 integral, inout vec4 light)
+{
+    float nextEntry = tableEntryAfter(entry, place);
+    vec4 nextIntegral = tableIntegral(nextEntry);
+    vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
+#ifdef SHADING
+    c = lit(c, place - 0.5 * depth * VOXEL_LENGTH * direction, t - 0.5 * depth);
+#endif
+#ifdef PAINTED
+    c.rgb = painted(c.rgb, origin + (t - 0.5 * depth) * direction);
+#endif
+    COUNT_SAMPLE
+    float next = light.a * exp2(-c.a * (depth * unitsPerDepth));
+    light = vec4(light.rgb + (light.a - next) * c.rgb, next);
+    entry = nextEntry;
+    integral = nextIntegral;
+}
+
+// Light of the steps that reach into what the brick shows, front to back: premultiplied colour, opacity. The ends
+// of steps are where the table is asked, so steps are cut at the brick's ends.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
+{
+    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
+    vec2 brick = boxSegment(brickMin, brickMax, origin, direction);
+    float start = max(tNear, brick.x), stop = min(tFar, brick.y);
+#ifdef SKIPPING
+    shown = occupiedPart(origin, direction, max(start, shown.x), min(stop, shown.y));
+#endif
+    float i = max(0.0, floor((shown.x - tNear) / dt));
+    float last = min(count, ceil((shown.y - tNear) / dt));
+    float unitsPerDepth = length(frameToUnits * direction);
+    vec3 rate = VOXEL_LENGTH * direction;
+    vec4 light = vec4(0.0, 0.0, 0.0, 1.0); // colour, transmittance
+    if (homogeneous && i < last) {
+        // One step from end to end.
+        float end = min(stop, tNear + last * dt);
+        tNear = max(start, tNear + i * dt);
+        dt = end - tNear;
+        i = 0.0;
+        last = 1.0;
+    }
+    float t = max(start, tNear + i * dt);
+    vec3 place = placeOf(origin + t * direction);
+    float entry = tableEntry(place);
+    vec4 integral = tableIntegral(entry);
+    float depth = min(stop, tNear + (i + 1.0) * dt) - t; // of the first step, which may be cut
+    place += rate * depth;
+    t += depth;
+    for (int steps = int(last - i); steps > 0 && light.a > OPAQUE_ENOUGH; --steps) {
+        addRun(origin, direction, t, place, depth, unitsPerDepth, entry, integral, light);
+        depth = min(dt, stop - t); // of the last one, which may be cut too
+        t += depth;
+        place += rate * depth;
+    }
+    return vec4(light.rgb, 1.0 - light.a);
+}
+
+#elif defined(SLAB)
+uniform bool homogeneous; // all of the brick has one value
+
+// Light of the brick's steps, front to back: premultiplied colour, opacity.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
+#ifdef SKIPPING
+    brick = occupiedPart(origin, direction, max(tNear, brick.x), min(tFar, brick.y));
+#endif
+    float perDepth = count / (tFar - tNear);
+    float i = max(0.0, ceil((brick.x - tNear) * perDepth - 0.5));
+    float last = min(count, ceil((brick.y - tNear) * perDepth - 0.5)); // not one of the brick's
+    vec3 rate = VOXEL_LENGTH * direction * dt;
+    float units = dt * length(frameToUnits * direction);
+    vec3 color = vec3(0.0);
+    float transmittance = 1.0;
+    if (homogeneous && i < last) {
+        units *= last - i;
+        last = i + 1.0;
+    }
+    float t = tNear + (i + 0.5) * dt;
+    vec3 place = placeOf(origin + t * direction);
+    int steps = int(last - i);
+    if (steps > 0) do {
+        vec4 c = classify(place);
+#ifdef SHADING
+        c = lit(c, place, t);
+#endif
+#ifdef PAINTED
+        c.rgb = painted(c.rgb, origin + t * direction);
+#endif
+        t += dt;
+        COUNT_SAMPLE
+        float next = transmittance * exp2(-c.a * units);
+        color += (transmittance - next) * c.rgb;
+        transmittance = next;
+        place += rate;
+    } while (--steps > 0 && transmittance > OPAQUE_ENOUGH);
+    return vec4(color, 1.0 - transmittance);
+}
+
+#else
+vec4 slice(vec3 place, vec3 direction, float thickness)
+{
+#ifdef PREINTEGRATED
+    // The layer's own ends; one frame unit of the ray is `direction`.
+    vec3 halfRun = 0.5 * thickness * direction * VOXEL_LENGTH;
+    float entry0 = tableEntry(place - halfRun);
+    float entry1 = tableEntryAfter(entry0, place + halfRun);
+    vec4 c = classifyRun(entry0, tableIntegral(entry0), entry1, tableIntegral(entry1));
+#else
+    vec4 c = classify(place);
+#endif
+#ifdef VERTEX_COLORS
+#ifdef VOXELS
+    c *= vertexColor;
+#else
+    c = vec4(vertexColor.rgb, -log2(max(1.0 - vertexColor.a, 5.9604645e-8)));
+#endif
+#endif
+#ifdef SHADING
+    vec3 directionEye = rayDirectionEye * vec3(gl_FragCoord.xy - windowCenter, 1.0);
+    c.rgb = shade(c.rgb, place, eyePosition, -normalize(directionEye));
+#endif
+#ifdef PAINTED
+    c.rgb = painted(c.rgb, framePosition);
+#endif
+    float units = thickness * length(frameToUnits * direction);
+    float depth = 0.6931471806 * c.a * units; // optical
+    // 1 - exp(-depth) without cancelling the digits of thin layers.
+    float alpha =
+        depth < 0.01 ? depth * (1.0 - depth * (0.5 - depth * 0.16666667)) : 1.0 - exp(-depth);
+    return vec4(c.rgb * alpha, alpha);
+}
+#endif

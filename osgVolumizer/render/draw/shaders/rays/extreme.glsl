@@ -1,0 +1,70 @@
+// The highest or lowest value, by BETTER.
+
+#if defined(SLAB)
+#ifdef RGBA
+// Highest or lowest premultiplied components on the brick's part of the segment, ends included.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    tNear = max(tNear, brick.x);
+    tFar = min(tFar, brick.y);
+    float count = stepsOf(tNear, tFar);
+    vec3 place = placeOf(origin + direction * tNear);
+    vec3 rate = VOXEL_LENGTH * direction * ((tFar - tNear) / count);
+    vec4 texel = voxelAt(place);
+    vec4 best = vec4(texel.rgb * texel.a, texel.a);
+    place += rate;
+    for (int i = int(count); i > 0; --i) {
+        texel = voxelAt(place);
+        best = BETTER(best, vec4(texel.rgb * texel.a, texel.a));
+        COUNT_SAMPLE
+        place += rate;
+    }
+    return best;
+}
+#else
+// Highest or lowest value on the brick's part of the segment, ends included. Between samples the extreme is looked
+// for about the best one, by halving: an interpolant has kinks, which would make plain sampling first order.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    tNear = max(tNear, brick.x);
+    tFar = min(tFar, brick.y);
+    float count = stepsOf(tNear, tFar);
+    vec3 start = placeOf(origin + direction * tNear);
+    vec3 rate = VOXEL_LENGTH * direction * ((tFar - tNear) / count);
+    vec3 place = start + rate;
+    float best = voxelAt(start), at = 0.0;
+    int steps = int(count);
+    for (int i = 1; i <= steps; ++i) {
+        float value = voxelAt(place);
+        at = BETTER(value, best) != best ? float(i) : at;
+        best = BETTER(value, best);
+        COUNT_SAMPLE
+        place += rate;
+    }
+    float reach = 0.5;
+    for (int i = 0; i < 5; ++i) {
+        float before = max(at - reach, 0.0), after = min(at + reach, count);
+        float low = voxelAt(start + before * rate), high = voxelAt(start + after * rate);
+        float better = BETTER(low, high);
+        if (BETTER(better, best) != best) at = better == low ? before : after;
+        best = BETTER(better, best);
+        reach *= 0.5;
+    }
+    return vec4(best);
+}
+#endif
+
+#elif defined(SLICE)
+vec4 slice(vec3 place, vec3 direction, float thickness)
+{
+#ifdef RGBA
+    vec4 texel = voxelAt(place);
+    return vec4(texel.rgb * texel.a, texel.a);
+#else
+    return vec4(voxelAt(place));
+#endif
+}
+
+#elif defined(RESOLVE) && !defined(RGBA)
+float gatheredEntry(vec4 ray) { return ray.x * valueToEntry.x + valueToEntry.y; }
+#endif

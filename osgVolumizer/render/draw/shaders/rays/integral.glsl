@@ -1,0 +1,28 @@
+// The integral of the value along the ray, and of 1, in opacity units.
+
+#if defined(SLAB)
+// Integral of the value over the brick's steps, and of 1.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
+    float first = max(0.0, ceil((brick.x - tNear) / dt - 0.5));
+    int steps = int(min(count, ceil((brick.y - tNear) / dt - 0.5)) - first);
+    vec3 place = placeOf(origin + direction * (tNear + (first + 0.5) * dt));
+    vec3 rate = VOXEL_LENGTH * direction * dt;
+    float sum = 0.0;
+    for (int i = 0; i < steps; ++i) {
+        sum += voxelAt(place);
+        COUNT_SAMPLE
+        place += rate;
+    }
+    float stepUnits = dt * length(frameToUnits * direction);
+    return vec4(sum * stepUnits, float(max(steps, 0)) * stepUnits, 0.0, 0.0);
+}
+
+#elif defined(SLICE)
+vec4 slice(vec3 place, vec3 direction, float thickness)
+{
+    float units = thickness * length(frameToUnits * direction);
+    return vec4(voxelAt(place) * units, units, 0.0, 0.0);
+}
+#endif

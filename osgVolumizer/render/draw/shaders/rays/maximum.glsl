@@ -1,0 +1,3 @@
+// The highest value on the ray.
+
+#define BETTER(a, b) max(a, b)

@@ -1,0 +1,3 @@
+// The lowest value on the ray.
+
+#define BETTER(a, b) min(a, b)
