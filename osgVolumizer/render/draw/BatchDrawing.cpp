@@ -89,6 +89,21 @@ void drawApart(const BatchDrawing& drawing, const BrickBatch& batch)
 
 } // namespace
 
+BrickBatch batchOf(const SelectedBrick& brick)
+{
+    BrickBatch batch;
+    batch.brick = brick.texels;
+    batch.clipMin = glm::vec3(brick.box.min);
+    batch.clipMax = glm::vec3(brick.box.max);
+    batch.brickMin = glm::vec3(brick.clipBox.min);
+    batch.brickMax = glm::vec3(brick.clipBox.max);
+    batch.cells = brick.cells;
+    batch.joined = brick.joined;
+    batch.textureScale = brick.textureScale;
+    batch.textureOffset = brick.textureOffset;
+    return batch;
+}
+
 void drawBatch(const BatchDrawing& drawing, const BrickBatch& batch)
 {
     if (glm::any(glm::greaterThan(batch.clipMin, batch.clipMax))) return;

@@ -23,6 +23,9 @@ struct BatchDrawing
     const core::View& view;
 };
 
+/// The batch of a brick, without triangles.
+BrickBatch batchOf(const SelectedBrick& brick);
+
 /// Draws the triangles of a batch from a mesh that is bound. What the card refuses is drawn the
 /// next best way: bricks that cannot share a texture one by one, far to near.
 void drawBatch(const BatchDrawing& drawing, const BrickBatch& batch);

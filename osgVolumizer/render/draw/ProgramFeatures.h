@@ -46,7 +46,8 @@ struct ProgramFeatures : ProgramFlags
     /// Whether surfaces are sorted before the volume, whose shader reads them.
     bool needsSortedSurfaces() const { return ranked || slotCount > 0; }
 
-    /// Whether the rays' values are gathered in a target of their own, and drawn at once, at one depth.
+    /// Whether the rays' values are gathered in a target of their own, and drawn at once, at one
+    /// depth.
     bool gathers() const;
 
     /// Different for different features.

@@ -20,9 +20,6 @@ struct BrickBatch
     unsigned firstIndex = 0, indexCount = 0;
 };
 
-/// A brick's, without triangles.
-BrickBatch batchOf(const SelectedBrick& brick);
-
 /// Triangles far to near, by brick. Immutable once made.
 struct VolumeMesh
 {

@@ -1,5 +1,7 @@
 #include "SlabMesh.h"
 
+#include "../draw/BatchDrawing.h"
+
 #include "../../core/geometry/ConvexPolytope.h"
 #include "../../core/sampling/ViewHelpers.h"
 

@@ -25,6 +25,7 @@ struct VolumeInstance
     std::shared_ptr<const VolumeLook> look;
     StateAbove above;
     bool skipping = false;                   ///< leap over cells that show nothing
+    bool countSamples = false;               ///< see ViewHooks
     osg::ref_ptr<osg::RefMatrix> frameToEye; ///< model-view of the leaf
     osg::ref_ptr<VolumeDrawable> drawable; ///< of the leaf that stands for the volume until sorting
     std::vector<SelectedBrick> bricks;

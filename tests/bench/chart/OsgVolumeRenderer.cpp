@@ -215,7 +215,7 @@ osg::ref_ptr<osg::Node> OsgVolumeRenderer::makeNode(double stepVoxel)
     layer->addProperty(properties(stepVoxel));
     osg::ref_ptr<osgVolume::VolumeTile> tile = new osgVolume::VolumeTile;
     tile->setLocator(fixedFunction() ? imageBox.get() : sampleBox.get());
-    tile->setSplit(layer);
+    tile->setLayer(layer);
     tile->setVolumeTechnique(makeTechnique(stepVoxel));
     if (_technique != OsgVolumeTechnique::MULTIPASS) return tile;
     osg::ref_ptr<osgVolume::VolumeScene> scene = new osgVolume::VolumeScene;
