@@ -113,7 +113,8 @@ void expectFoundTurnedRound(const test::Layers& layers, std::size_t atLeast)
 {
     std::vector<test::Include> turned, between;
     for (const test::Include& include : projectIncludes()) {
-        const int from = layerOf(include.file, layers), to = layerOf(include.target, layers);
+        const int from = test::layerOf(include.file, layers);
+        const int to = test::layerOf(include.target, layers);
         if (from < 0 || to < 0 || from > to) continue;
         turned.push_back({include.target, include.file});
         if (from != to) between.push_back(turned.back());

@@ -54,9 +54,11 @@ TEST(ProgramFeatures, DifferentOnesHaveDifferentKeys)
 TEST(ProgramFeatures, EveryFlagIsDefinedForTheShader)
 {
     std::set<std::string> texts{ProgramFeatures().defines()};
-    for (const ProgramFeatures& features : variants())
-        if (features.rayFunction == VolumeAppearance::COMPOSITE && features.paintCount < 2)
-            EXPECT_TRUE(texts.insert(features.defines()).second) << features.defines();
+    for (const ProgramFeatures& features : variants()) {
+        if (features.rayFunction != VolumeAppearance::COMPOSITE || features.paintCount > 1)
+            continue; // said by the shader's own files
+        EXPECT_TRUE(texts.insert(features.defines()).second) << features.defines();
+    }
 }
 
 TEST(ProgramFeatures, DefinesAreLines)

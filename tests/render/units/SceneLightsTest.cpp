@@ -37,7 +37,7 @@ TEST(SceneLights, AreMovedToTheEyeFrame)
 {
     osg::ref_ptr<osgUtil::RenderStage> stage = new osgUtil::RenderStage;
     const osg::Matrixd toEye =
-        osg::Matrixd::rotate(osg::PI_2, {0, 0, 1}) * osg::Matrixd::translate(10, 20, 30);
+        osg::Matrixd::rotate(osg::PI_2, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(10, 20, 30);
     add(*stage, makeLight(3, {2, 0, 0, 2}), toEye); // at (1, 0, 0)
     add(*stage, makeLight(1, {1, 0, 0, 0}), toEye); // from +x
     const std::vector<EyeLight> lights = lightsOf(*stage);
@@ -58,7 +58,8 @@ TEST(SceneLights, SpotsHaveUnitDirectionsAndACosine)
     spot->setSpotCutoff(60.0f);
     spot->setSpotExponent(7.0f);
     spot->setLinearAttenuation(0.5f);
-    add(*stage, spot, osg::Matrixd::scale(5, 5, 5) * osg::Matrixd::rotate(osg::PI_2, {1, 0, 0}));
+    add(*stage, spot,
+        osg::Matrixd::scale(5, 5, 5) * osg::Matrixd::rotate(osg::PI_2, osg::Vec3d(1, 0, 0)));
     const std::vector<EyeLight> lights = lightsOf(*stage);
     ASSERT_EQ(lights.size(), 1u);
     expectNear(lights[0].spot, {0, 1, 0, 0.5f});

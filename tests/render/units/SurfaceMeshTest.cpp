@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
 using namespace osgVolumizer;
