@@ -14,6 +14,9 @@ namespace render {
 /// range tells that it shows nothing. Expects the volume's look.
 void selectBricks(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor);
 
+/// The number of the frame that is culled; 0 where the visitor knows none.
+unsigned frameOf(const osgUtil::CullVisitor& visitor);
+
 /// Whether parts of bricks that show nothing are left out; for tests and for tuning. On by default.
 void setSkipping(bool on);
 
