@@ -125,6 +125,7 @@ BrickPlace BrickLayout::brick(std::int64_t index) const
 
 int BrickLayout::brickOnAxis(double position, int axis) const
 {
+    if (_count[axis] == 1) return 0;
     const double step = _brickSize[axis] - _overlap;
     const double place = std::floor((position - cutBefore(0.0, _overlap)) / step);
     const double brick = std::clamp(place, 0.0, _count[axis] - 1.0);
