@@ -4,10 +4,10 @@
 #include "core/NumberRule.h"
 #include "core/Text.h"
 #include "render/context/ContextResources.h"
+#include "render/context/SharedStateSets.h"
 #include "render/cull/Flattening.h"
 #include "render/cull/FrameTimes.h"
-#include "render/cull/SamplingChoice.h"
-#include "render/context/SharedStateSets.h"
+#include "render/cull/SamplingChoices.h"
 #include "render/textures/TableTextures.h"
 
 namespace osgVolumizer {

@@ -48,6 +48,18 @@ Status VoxelSource::Description::validate() const
     return {};
 }
 
+Status VoxelSource::checkRegion(const core::Box3i& region, const glm::ivec3& size)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (region.min[axis] < 0 || region.max[axis] > size[axis])
+            return {ErrorCode::INDEX_OUT_OF_RANGE,
+                    "samples " + core::formatTriple(region.min) + " to " +
+                        core::formatTriple(region.max) + " are outside the volume of " +
+                        core::formatTriple(size),
+                    axis};
+    return {};
+}
+
 MemoryVoxelSource::MemoryVoxelSource(const MemoryVoxelSource& o, const osg::CopyOp& op)
     : VoxelSource(o, op), _description(o._description), _data(o._data)
 {
@@ -91,22 +103,15 @@ std::size_t MemoryVoxelSource::sizeInBytes() const
     return _data ? static_cast<std::size_t>(_description.sizeInBytes()) : 0;
 }
 
-Status MemoryVoxelSource::checkRegion(const core::Box3i& region) const
+Status MemoryVoxelSource::checkOwnRegion(const core::Box3i& region) const
 {
     if (!_data) return {ErrorCode::VALUE_INVALID, "the voxel source has no voxels"};
-    for (int axis = 0; axis < 3; ++axis)
-        if (region.min[axis] < 0 || region.max[axis] > _description.size[axis])
-            return {ErrorCode::INDEX_OUT_OF_RANGE,
-                    "samples " + core::formatTriple(region.min) + " to " +
-                        core::formatTriple(region.max) + " are outside the volume of " +
-                        core::formatTriple(_description.size),
-                    axis};
-    return {};
+    return checkRegion(region, _description.size);
 }
 
 Status MemoryVoxelSource::read(const core::Box3i& region, void* destination) const
 {
-    if (Status status = checkRegion(region); !status.ok()) return status;
+    if (Status status = checkOwnRegion(region); !status.ok()) return status;
     core::copyRegion({_data.get(), _description.type, _description.components, _description.size},
                      region, destination);
     return {};
@@ -114,7 +119,7 @@ Status MemoryVoxelSource::read(const core::Box3i& region, void* destination) con
 
 VoxelBlock MemoryVoxelSource::share(const core::Box3i& region) const
 {
-    if (region.empty() || !checkRegion(region).ok()) return {};
+    if (region.empty() || !checkOwnRegion(region).ok()) return {};
     // In one piece: a run of slices, of rows of one slice, or of samples of one row.
     const glm::ivec3 size = region.size();
     const glm::ivec3& all = _description.size;

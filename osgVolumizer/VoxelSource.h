@@ -64,6 +64,9 @@ protected:
     /// A copy with CopyOp::DEEP_COPY_OBJECTS is to share nothing that can be changed.
     VoxelSource(const VoxelSource& o, const osg::CopyOp& op) : osg::Object(o, op) {}
     ~VoxelSource() override = default;
+
+    /// Refuses a region that reaches beyond a volume of `size` samples (INDEX_OUT_OF_RANGE).
+    static Status checkRegion(const core::Box3i& region, const glm::ivec3& size);
 };
 
 /// Voxels in memory: the library's own, or the application's without a copy.
@@ -104,7 +107,7 @@ protected:
     ~MemoryVoxelSource() override = default;
 
 private:
-    Status checkRegion(const core::Box3i& region) const;
+    Status checkOwnRegion(const core::Box3i& region) const;
 
     Description _description;
     std::shared_ptr<void> _data;

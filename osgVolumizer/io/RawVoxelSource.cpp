@@ -1,6 +1,5 @@
 #include "RawVoxelSource.h"
 
-#include "../core/Text.h"
 #include "../core/voxels/VoxelData.h"
 
 #include <algorithm>
@@ -121,13 +120,7 @@ Status RawVoxelSource::read(const core::Box3i& region, void* destination) const
 {
     if (!_file) return {ErrorCode::VALUE_INVALID, "the voxel source has no file"};
     if (region.empty()) return {};
-    for (int axis = 0; axis < 3; ++axis)
-        if (region.min[axis] < 0 || region.max[axis] > _description.size[axis])
-            return {ErrorCode::INDEX_OUT_OF_RANGE,
-                    "samples " + core::formatTriple(region.min) + " to " +
-                        core::formatTriple(region.max) + " are outside the volume of " +
-                        core::formatTriple(_description.size),
-                    axis};
+    if (Status status = checkRegion(region, _description.size); !status.ok()) return status;
     auto* to = static_cast<unsigned char*>(destination);
     const std::int64_t element = static_cast<std::int64_t>(voxelTypeSize(_description.type));
     const std::int64_t layer = element * region.size().x * region.size().y;

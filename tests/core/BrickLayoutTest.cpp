@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 using namespace osgVolumizer;
@@ -135,4 +136,29 @@ TEST(BrickLayout, RefusesWhatHasNoMeaning)
         BrickLayout::create({8, 8, 8}, {4, 4, 4}, 1, static_cast<PartialBricks>(9)).status.code);
     const int huge = 2147483647;
     EXPECT_EQ(ErrorCode::TOO_LARGE, BrickLayout::create({huge, huge, huge}, {2, 2, 2}).status.code);
+}
+
+TEST(BrickLayout, FindsTheBrickOfAPosition)
+{
+    for (const int overlap : {0, 1, 2, 3, 5})
+        for (const PartialBricks partial :
+             {PartialBricks::SHRINK_TO_FIT, PartialBricks::TRUNCATE, PartialBricks::AVERAGE_UP}) {
+            const BrickLayout layout =
+                *BrickLayout::create({50, 7, 23}, {9, 7, 8}, overlap, partial);
+            for (std::int64_t i = 0; i < layout.brickCount(); ++i) {
+                const Box3d box = layout.brick(i).clipBox;
+                EXPECT_EQ(layout.brickAt(box.min), i); // half-open
+                EXPECT_EQ(layout.brickAt(box.center()), i);
+                glm::dvec3 last;
+                for (int axis = 0; axis < 3; ++axis)
+                    last[axis] = std::nextafter(box.max[axis], 0.0);
+                EXPECT_EQ(layout.brickAt(last), i);
+            }
+            const Box3d all = layout.extent();
+            EXPECT_EQ(layout.brickAt(all.max), layout.brickCount() - 1);
+            EXPECT_EQ(layout.brickAt(all.max + glm::dvec3(1e-9, 0, 0)), -1);
+            EXPECT_EQ(layout.brickAt(all.min - glm::dvec3(0, 1e-9, 0)), -1);
+            EXPECT_EQ(layout.brickAt({NAN, 1, 1}), -1);
+        }
+    EXPECT_EQ(BrickLayout().brickAt(glm::dvec3(0.0)), -1);
 }

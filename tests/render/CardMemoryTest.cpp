@@ -422,7 +422,7 @@ TEST_F(CardMemory, ASourceThatFailsIsNever)
     support::SceneRenderer renderer(volume, view());
     EXPECT_EQ(support::coveredPixels(renderer.render()).count(), 0u);
     const auto residency = render::BrickResidency::of(*volume->getVoxels());
-    EXPECT_FALSE(residency->get(*volume->getVoxels(), 0, false, 1));
+    EXPECT_FALSE(residency->ask(*volume->getVoxels(), {0, false, 1}));
     EXPECT_EQ(residency->residency(*volume->getVoxels(), 0, false, 0), render::Residency::NEVER);
     EXPECT_EQ(reports.all(), 1u);
 }

@@ -1,16 +1,15 @@
 #include "FaceCache.h"
 
+#include "../RecencyCache.h"
 #include "ViewHelpers.h"
 
 #include <glm/geometric.hpp>
 
-#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <mutex>
 #include <string>
-#include <unordered_map>
 
 namespace osgVolumizer {
 namespace core {
@@ -67,6 +66,8 @@ double angle(const glm::dvec3& a, const glm::dvec3& b)
 
 struct FaceCache::Private
 {
+    explicit Private(std::size_t capacity) : entries(capacity) {}
+
     struct Entry
     {
         std::mutex mutex; ///< held while this view is looked up or polygonized
@@ -74,7 +75,6 @@ struct FaceCache::Private
         Box3d bounds;
         Made made;
         std::vector<std::shared_ptr<PolygonizedFaces>> pool;
-        std::uint64_t lastCall = 0; ///< guarded by the map's mutex
 
         bool reusable(const std::shared_ptr<const TetraSet>& set, const std::vector<Box3d>& boxes,
                       const View& view, const SamplingParameters& parameters, double slack) const;
@@ -85,17 +85,12 @@ struct FaceCache::Private
 
     std::shared_ptr<Entry> entryOf(ViewId viewId);
 
-    std::size_t capacity;
-    mutable std::mutex mutex; ///< guards the map only
-    std::unordered_map<ViewId, std::shared_ptr<Entry>> entries;
-    std::uint64_t calls = 0;
+    mutable std::mutex mutex; ///< guards the entries' list only
+    RecencyCache<ViewId, std::shared_ptr<Entry>> entries;
     std::atomic<std::uint64_t> polygonizations{0}, reuses{0};
 };
 
-FaceCache::FaceCache(std::size_t capacity) : _private(new Private)
-{
-    _private->capacity = capacity;
-}
+FaceCache::FaceCache(std::size_t capacity) : _private(new Private(capacity)) {}
 FaceCache::~FaceCache() = default;
 
 bool FaceCache::Private::Entry::reusable(const std::shared_ptr<const TetraSet>& set,
@@ -160,16 +155,8 @@ Status FaceCache::Private::Entry::make(const std::shared_ptr<const TetraSet>& se
 std::shared_ptr<FaceCache::Private::Entry> FaceCache::Private::entryOf(ViewId viewId)
 {
     const std::lock_guard<std::mutex> lock(mutex);
-    const auto found = entries.find(viewId);
-    if (found == entries.end() && entries.size() >= capacity)
-        entries.erase(
-            std::min_element(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
-                return a.second->lastCall < b.second->lastCall;
-            }));
-    std::shared_ptr<Entry>& slot = entries[viewId];
-    if (!slot) slot = std::make_shared<Entry>();
-    slot->lastCall = ++calls;
-    return slot;
+    if (const auto* known = entries.find(viewId)) return *known;
+    return entries.add(viewId, std::make_shared<Entry>());
 }
 
 Result<FaceCache::FacesPtr> FaceCache::faces(ViewId viewId,
@@ -197,7 +184,7 @@ Result<FaceCache::FacesPtr> FaceCache::faces(ViewId viewId,
 void FaceCache::forget(ViewId viewId)
 {
     const std::lock_guard<std::mutex> lock(_private->mutex);
-    _private->entries.erase(viewId);
+    _private->entries.remove(viewId);
 }
 
 void FaceCache::clear()

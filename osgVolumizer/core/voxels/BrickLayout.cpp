@@ -123,6 +123,29 @@ BrickPlace BrickLayout::brick(std::int64_t index) const
     return place;
 }
 
+int BrickLayout::brickOnAxis(double position, int axis) const
+{
+    if (_count[axis] == 1) return 0;
+    const double step = _brickSize[axis] - _overlap;
+    const double place = std::floor((position - cutBefore(0.0, _overlap)) / step);
+    const double brick = std::clamp(place, 0.0, _count[axis] - 1.0);
+    // Just before a cut the quotient may have been rounded up to it.
+    const bool before = brick > 0.0 && position < cutBefore(brick * step, _overlap);
+    return static_cast<int>(brick) - (before ? 1 : 0);
+}
+
+std::int64_t BrickLayout::brickAt(const glm::dvec3& positionVoxel) const
+{
+    const Box3d all = extent();
+    glm::ivec3 brick;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double position = positionVoxel[axis];
+        if (!(position >= all.min[axis] && position <= all.max[axis])) return -1;
+        brick[axis] = brickOnAxis(position, axis);
+    }
+    return index(brick);
+}
+
 Box3d BrickLayout::extent() const
 {
     Box3d box;

@@ -67,10 +67,15 @@ public:
     }
     glm::ivec3 coordinates(std::int64_t index) const;
     BrickPlace brick(std::int64_t index) const;
+    /// The brick whose clip box holds a position, voxel frame; one between two neighbours belongs
+    /// to the farther of them. -1 outside extent(), and for positions that are no numbers.
+    std::int64_t brickAt(const glm::dvec3& positionVoxel) const;
     /// The drawn extent in the voxel frame: [0, N-1], less under TRUNCATE.
     Box3d extent() const;
 
 private:
+    int brickOnAxis(double position, int axis) const;
+
     glm::ivec3 _size{0};
     glm::ivec3 _brickSize{0};
     glm::ivec3 _count{0};

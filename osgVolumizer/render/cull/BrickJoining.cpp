@@ -1,7 +1,8 @@
 #include "BrickJoining.h"
 
 #include "../textures/BrickResidency.h"
-#include "../textures/SelectedBrick.h"
+#include "../textures/JoinedBricks.h"
+#include "BrickSelection.h"
 
 #include "../../core/voxels/VoxelData.h"
 
@@ -41,7 +42,8 @@ double joinedBytes(const Voxels& voxels, bool gradients)
            double(texelFormat(voxels, gradients).texelBytes());
 }
 
-bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
+bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, const BrickResidency& textures,
+                 osgUtil::CullVisitor& visitor)
 {
     const ProgramFeatures& features = volume.look->features;
     const core::BrickLayout& layout = voxels.getLayout();
@@ -54,7 +56,8 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, osgUtil::Cu
     const osg::State* state = visitor.getState();
     const glm::ivec3 size = voxels.getSize();
     return state && std::max({size.x, size.y, size.z}) <= texture3DSizeOf(*state) &&
-           joinedBytes(voxels, features.gradientTexture) <= MAXIMUM_BYTES;
+           joinedBytes(voxels, features.gradientTexture) <=
+               std::min(MAXIMUM_BYTES, double(textures.budget()));
 }
 
 // By all bricks that were ever needed, so that it does not depend on the view. Where nothing is
@@ -129,16 +132,16 @@ std::shared_ptr<const BrickCells> joinCells(const VolumeInstance& volume, const 
 void joinBricks(VolumeInstance& volume, const Voxels& voxels, const OccupancyQuery& query,
                 const LeftOutBricks& leftOut, osgUtil::CullVisitor& visitor)
 {
-    if (leftOut.unreadable || !canBeJoined(volume, voxels, visitor)) return;
-    const bool gradients = volume.look->features.gradientTexture;
     const osg::ref_ptr<BrickResidency> textures = BrickResidency::of(voxels);
+    if (leftOut.unreadable || !canBeJoined(volume, voxels, *textures, visitor)) return;
+    const bool gradients = volume.look->features.gradientTexture;
     SelectedBrick all;
     all.box = unionOf(volume.bricks);
     all.cells = joinCells(volume, voxels, *textures, query);
     if (!isWorthJoining(volume, all, textures->isJoined(voxels, gradients))) return;
     auto joined = std::make_shared<JoinedBricks>();
     if (!addLeftOut(volume, voxels, *textures, leftOut, all.box, joined->pieces)) return;
-    joined->texture = textures->joined(voxels, gradients);
+    joined->texture = textures->joined(voxels, gradients, frameOf(visitor));
     if (joined->texture->isRefused(visitor.getState()->getContextID())) return;
     for (const SelectedBrick& brick : volume.bricks)
         joined->pieces.push_back(pieceOf(voxels, brick.index, gradients));

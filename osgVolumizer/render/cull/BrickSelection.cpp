@@ -70,7 +70,22 @@ bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickResidency&
     return true;
 }
 
+// Nearer bricks are more important.
+float priorityOf(const core::Box3d& box, const VolumeInstance& volume)
+{
+    if (!volume.prepared->voxelFrame) return 0.0f;
+    const glm::dvec3 center = box.center();
+    const osg::Vec3d centerEye = osg::Vec3d(center.x, center.y, center.z) * *volume.frameToEye;
+    return -static_cast<float>(centerEye.length());
+}
+
 } // namespace
+
+unsigned frameOf(const osgUtil::CullVisitor& visitor)
+{
+    const osg::FrameStamp* stamp = visitor.getFrameStamp();
+    return stamp ? stamp->getFrameNumber() : 0;
+}
 
 bool isWorthSkipping(const VolumeInstance& volume)
 {
@@ -91,8 +106,7 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, const ViewHooks&
     const PreparedGeometry& prepared = *volume.prepared;
     const ProgramFeatures& features = volume.look->features;
     const OccupancyQuery query = queryOf(volume, voxels);
-    const osg::FrameStamp* stamp = visitor.getFrameStamp();
-    const unsigned frame = stamp ? stamp->getFrameNumber() : 0;
+    const unsigned frame = frameOf(visitor);
     LeftOutBricks leftOut;
     for (std::int64_t i = 0; i < layout.brickCount(); ++i) {
         const core::BrickPlace place = layout.brick(i);
@@ -111,7 +125,8 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, const ViewHooks&
         if (!features.gathers() &&
             !cutToOccupied(volume, voxels, *textures, query, hooks.skipping, brick, leftOut))
             continue;
-        brick.texels.texture = textures->get(voxels, i, features.gradientTexture, frame);
+        brick.texels.texture = textures->ask(
+            voxels, {i, features.gradientTexture, frame, priorityOf(brick.box, volume)});
         brick.texels.voxels = &voxels;
         brick.texels.index = i;
         brick.texels.gradients = features.gradientTexture;

@@ -16,6 +16,9 @@ namespace render {
 void selectBricks(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& hooks,
                   osgUtil::CullVisitor& visitor);
 
+/// The number of the frame that is culled; 0 where the visitor knows none.
+unsigned frameOf(const osgUtil::CullVisitor& visitor);
+
 /// Whether so many cells of the selected bricks are empty that leaping over them pays.
 bool isWorthSkipping(const VolumeInstance& volume);
 

@@ -10,7 +10,7 @@
 #include "../volume/VolumeInstance.h"
 #include "BrickSelection.h"
 #include "FrameTimes.h"
-#include "SamplingChoice.h"
+#include "SamplingChoices.h"
 
 #include <osg/Timer>
 #include <osgUtil/CullVisitor>
@@ -106,7 +106,7 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
             glm::dmat3(volume.prepared->frameToObject) / appearance.getEffectiveOpacityUnit();
         question.box = volume.prepared->regionBox;
         question.nearest = appearance.getInterpolation() == VolumeAppearance::NEAREST;
-        const SamplingChoice choice =
+        const core::PeriodChoice choice =
             appearance.samplingChoices().get(*appearance.getVoxels(), question);
         volume.sampling.periodVoxel = glm::dvec3(choice.periodVoxel);
         table = choice.integrals ? question.integrals : question.midpoints;

@@ -5,8 +5,7 @@
 #include "../context/ReportOnce.h"
 #include "../context/Uniforms.h"
 #include "../textures/BrickCells.h"
-#include "../textures/BrickResidency.h"
-#include "../textures/SelectedBrick.h"
+#include "../textures/JoinedBricks.h"
 
 #include "../../core/ordering/BrickOrder.h"
 #include "../../core/sampling/ViewHelpers.h"
@@ -27,13 +26,7 @@ bool setVoxels(const BatchDrawing& drawing, const BrickBatch& batch)
 {
     CoarseTexture voxels;
     if (batch.joined) {
-        const JoinedBricks& joined = *batch.joined;
-        const auto load = [&joined](std::int64_t brick) {
-            return BrickResidency::texels(*joined.voxels, brick, joined.gradients);
-        };
-        if (!joined.texture->apply(drawing.renderInfo, drawing.limits, joined.pieces, load,
-                                   UNIT_VOXELS))
-            return false;
+        if (!batch.joined->apply(drawing.renderInfo, drawing.limits, UNIT_VOXELS)) return false;
     } else if (batch.brick.texture) {
         voxels = batch.brick.apply(drawing.renderInfo, drawing.limits, UNIT_VOXELS);
         if (!voxels.texture) return false;

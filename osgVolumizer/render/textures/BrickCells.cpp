@@ -1,10 +1,9 @@
 #include "BrickCells.h"
 
-#include "BrickResidency.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 namespace osgVolumizer {
 namespace render {
@@ -13,27 +12,6 @@ namespace {
 
 // Keys's kernel overshoots: the weights of one sign sum up to ((5/4)^3 + 1)/2 in three dimensions.
 constexpr double CUBIC_OVERSHOOT = 0.5 * (1.25 * 1.25 * 1.25 - 1.0);
-
-int cellSizeFor(const glm::ivec3& samples)
-{
-    return std::max({samples.x, samples.y, samples.z}) > 129 ? 16 : 8;
-}
-
-core::VoxelView viewOf(const Voxels& voxels, std::int64_t brick, const Voxels::Block& block)
-{
-    core::VoxelView view;
-    view.data = block.data;
-    view.type = voxels.getType();
-    view.size = voxels.getLayout().brick(brick).samples.size();
-    view.components = voxels.getComponents();
-    return view;
-}
-
-// The component that decides what shows: the value, or alpha.
-int shownComponent(const Voxels& voxels)
-{
-    return voxels.getComponents() == 4 ? 3 : 0;
-}
 
 osg::ref_ptr<osg::Texture3D> makeTexture(const glm::ivec3& count,
                                          const std::vector<std::uint8_t>& occupied)
@@ -133,26 +111,6 @@ void setOccupied(const core::CellGrid& grid, const std::vector<std::uint8_t>& oc
     cells.texture = makeTexture(grid.count, occupied);
 }
 
-std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, std::int64_t brick,
-                                               const core::CellGrid& grid,
-                                               const core::LayerRanges& layers,
-                                               const OccupancyQuery& query)
-{
-    auto result = std::make_shared<BrickCells>();
-    const auto shows = [&](double low, double high) {
-        return showsValues(voxels, query, low, high);
-    };
-    result->box = shownBox(layers, voxels.getLayout().brick(brick), query.cubic, shows);
-    if (result->box.empty()) return result;
-    const std::vector<std::uint8_t> occupied = core::occupiedCells(grid, shows);
-    setOccupied(grid, occupied, *result);
-    const auto range = std::minmax_element(grid.low.begin(), grid.low.end());
-    const float highest = *std::max_element(grid.high.begin(), grid.high.end());
-    result->homogeneous = voxels.getComponents() == 1 && *range.first == highest;
-    if (result->homogeneous) result->marchedVolume = 0.0;
-    return result;
-}
-
 // Marks the cells of a whole volume that an occupied cell of a brick reaches into.
 void markOccupied(const BrickCells& cells, const core::Box3d& clipBox, core::CellGrid& grid,
                   std::vector<std::uint8_t>& occupied)
@@ -178,29 +136,12 @@ void markOccupied(const BrickCells& cells, const core::Box3d& clipBox, core::Cel
             }
 }
 
-std::shared_ptr<const BrickCells>
-joinedCells(const Voxels& voxels,
-            const std::map<std::int64_t, std::shared_ptr<const BrickCells>>& parts)
-{
-    core::CellGrid grid;
-    const glm::ivec3 samples = voxels.getSize();
-    grid.cellSize = cellSizeFor(samples);
-    grid.count = glm::max((samples - 2) / grid.cellSize + 1, 1);
-    std::vector<std::uint8_t> occupied(static_cast<std::size_t>(core::sampleCount(grid.count)), 0);
-    auto result = std::make_shared<BrickCells>();
-    for (const auto& part : parts) {
-        const BrickCells& cells = *part.second;
-        if (!cells.texture) continue;
-        markOccupied(cells, voxels.getLayout().brick(part.first).clipBox, grid, occupied);
-        result->box.expand(cells.box.min);
-        result->box.expand(cells.box.max);
-        result->apartMarchedVolume += cells.marchedVolume;
-    }
-    setOccupied(grid, occupied, *result);
-    return result;
-}
-
 } // namespace
+
+int cellSizeFor(const glm::ivec3& samples)
+{
+    return std::max({samples.x, samples.y, samples.z}) > 129 ? 16 : 8;
+}
 
 osg::Texture3D* occupiedEverywhere()
 {
@@ -221,134 +162,46 @@ bool showsValues(const Voxels& voxels, const OccupancyQuery& query, double low, 
     return query.table->shows(a, b);
 }
 
-std::shared_ptr<const BrickCells> CellCache::get(const Voxels& voxels, std::int64_t brick,
-                                                 const OccupancyQuery& query)
+std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, std::int64_t brick,
+                                               const core::CellGrid& grid,
+                                               const core::LayerRanges& layers,
+                                               const OccupancyQuery& query)
 {
-    const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
-    const Key key = keyOf(voxels, query);
-    std::shared_ptr<Brick> held;
-    {
-        std::lock_guard<std::mutex> lock(_mutex);
-        std::shared_ptr<Brick>& known = _bricks[brick];
-        if (!known) known = std::make_shared<Brick>();
-        held = known;
-    }
-    Brick& entry = *held;
-    std::lock_guard<std::mutex> lock(entry.mutex);
-    if (entry.modifiedCount != modified || entry.layoutCount != layout) {
-        entry.modifiedCount = modified;
-        entry.layoutCount = layout;
-        entry.linear = entry.cubic = nullptr;
-        entry.layers = nullptr;
-        entry.cells.clear();
-    }
-    const auto found = std::find_if(entry.cells.begin(), entry.cells.end(),
-                                    [&key](const auto& c) { return c.first == key; });
-    if (found != entry.cells.end()) {
-        entry.cells.splice(entry.cells.begin(), entry.cells, found);
-        return found->second;
-    }
-    if (!scan(voxels, brick, query.cubic, entry)) return nullptr;
-    const core::CellGrid& grid = *(query.cubic ? entry.cubic : entry.linear);
-    entry.cells.emplace_front(key, findOccupied(voxels, brick, grid, *entry.layers, query));
-    if (entry.cells.size() > CAPACITY) entry.cells.pop_back();
-    return entry.cells.front().second;
+    auto result = std::make_shared<BrickCells>();
+    const auto shows = [&](double low, double high) {
+        return showsValues(voxels, query, low, high);
+    };
+    result->box = shownBox(layers, voxels.getLayout().brick(brick), query.cubic, shows);
+    if (result->box.empty()) return result;
+    const std::vector<std::uint8_t> occupied = core::occupiedCells(grid, shows);
+    setOccupied(grid, occupied, *result);
+    const auto range = std::minmax_element(grid.low.begin(), grid.low.end());
+    const float highest = *std::max_element(grid.high.begin(), grid.high.end());
+    result->homogeneous = voxels.getComponents() == 1 && *range.first == highest;
+    if (result->homogeneous) result->marchedVolume = 0.0;
+    return result;
 }
 
-CellCache::Key CellCache::keyOf(const Voxels& voxels, const OccupancyQuery& query)
+std::shared_ptr<const BrickCells>
+joinCells(const Voxels& voxels,
+          const std::map<std::int64_t, std::shared_ptr<const BrickCells>>& parts)
 {
-    const bool byTable = voxels.getComponents() == 1 && !query.isosurface;
-    return {byTable ? query.table->id : 0, query.cubic, query.isosurface,
-            query.isosurface ? query.isoFraction : 0.0};
-}
-
-std::shared_ptr<const BrickCells> CellCache::join(const Voxels& voxels, const OccupancyQuery& query,
-                                                  const std::vector<Part>& parts)
-{
-    const Key key = keyOf(voxels, query);
-    const unsigned layout = voxels.getLayoutCount();
-    std::lock_guard<std::mutex> lock(_mutex);
-    _joined.remove_if([layout](const Joined& j) { return j.layoutCount != layout; });
-    const auto found = std::find_if(_joined.begin(), _joined.end(),
-                                    [&key](const Joined& j) { return j.key == key; });
-    if (found != _joined.end())
-        _joined.splice(_joined.begin(), _joined, found);
-    else
-        _joined.push_front({key, layout, {}, nullptr});
-    if (_joined.size() > CAPACITY) _joined.pop_back();
-    Joined& joined = _joined.front();
-    bool changed = !joined.cells;
-    for (const Part& part : parts) {
-        auto& known = joined.parts[part.first];
-        changed = changed || known != part.second;
-        known = part.second;
+    core::CellGrid grid;
+    const glm::ivec3 samples = voxels.getSize();
+    grid.cellSize = cellSizeFor(samples);
+    grid.count = glm::max((samples - 2) / grid.cellSize + 1, 1);
+    std::vector<std::uint8_t> occupied(static_cast<std::size_t>(core::sampleCount(grid.count)), 0);
+    auto result = std::make_shared<BrickCells>();
+    for (const auto& part : parts) {
+        const BrickCells& cells = *part.second;
+        if (!cells.texture) continue;
+        markOccupied(cells, voxels.getLayout().brick(part.first).clipBox, grid, occupied);
+        result->box.expand(cells.box.min);
+        result->box.expand(cells.box.max);
+        result->apartMarchedVolume += cells.marchedVolume;
     }
-    if (changed) joined.cells = joinedCells(voxels, joined.parts);
-    return joined.cells;
-}
-
-bool CellCache::scan(const Voxels& voxels, std::int64_t brick, bool cubic, Brick& entry)
-{
-    auto& grid = cubic ? entry.cubic : entry.linear;
-    if (grid && entry.layers) return grid->cellCount() > 0;
-    const VoxelBlock block = BrickResidency::load(voxels, brick);
-    if (!block) return false;
-    const core::VoxelView view = viewOf(voxels, brick, block);
-    const int component = shownComponent(voxels);
-    const glm::dvec3 origin(voxels.getLayout().brick(brick).samples.min);
-    grid = std::make_shared<core::CellGrid>(core::scanCells(
-        view, cellSizeFor(view.size), origin,
-        cubic ? core::FilterSupport::CUBIC : core::FilterSupport::LINEAR, component));
-    if (!entry.layers)
-        entry.layers = std::make_shared<core::LayerRanges>(core::scanLayers(view, component));
-    return grid->cellCount() > 0;
-}
-
-bool CellCache::isScanned(const Voxels& voxels, std::int64_t brick) const
-{
-    std::shared_ptr<Brick> entry;
-    {
-        std::lock_guard<std::mutex> lock(_mutex);
-        const auto found = _bricks.find(brick);
-        if (found == _bricks.end()) return false;
-        entry = found->second;
-    }
-    std::lock_guard<std::mutex> lock(entry->mutex);
-    return entry->layers && entry->modifiedCount == voxels.getModifiedCount(brick) &&
-           entry->layoutCount == voxels.getLayoutCount();
-}
-
-std::vector<std::shared_ptr<CellCache::Brick>> CellCache::allBricks() const
-{
-    std::lock_guard<std::mutex> lock(_mutex);
-    std::vector<std::shared_ptr<Brick>> all;
-    for (const auto& brick : _bricks)
-        all.push_back(brick.second);
-    return all;
-}
-
-void CellCache::resizeGLObjectBuffers(unsigned int maximum)
-{
-    for (const std::shared_ptr<Brick>& brick : allBricks()) {
-        std::lock_guard<std::mutex> lock(brick->mutex);
-        for (auto& cells : brick->cells)
-            if (cells.second->texture) cells.second->texture->resizeGLObjectBuffers(maximum);
-    }
-    std::lock_guard<std::mutex> lock(_mutex);
-    for (auto& joined : _joined)
-        joined.cells->texture->resizeGLObjectBuffers(maximum);
-}
-
-void CellCache::releaseGLObjects(osg::State* state) const
-{
-    for (const std::shared_ptr<Brick>& brick : allBricks()) {
-        std::lock_guard<std::mutex> lock(brick->mutex);
-        for (const auto& cells : brick->cells)
-            if (cells.second->texture) cells.second->texture->releaseGLObjects(state);
-    }
-    std::lock_guard<std::mutex> lock(_mutex);
-    for (const auto& joined : _joined)
-        joined.cells->texture->releaseGLObjects(state);
+    setOccupied(grid, occupied, *result);
+    return result;
 }
 
 } // namespace render

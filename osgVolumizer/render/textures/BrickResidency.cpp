@@ -1,11 +1,40 @@
 #include "BrickResidency.h"
 
+#include "Texels.h"
+
 #include "../../core/voxels/VoxelData.h"
 
+#include <algorithm>
+#include <tuple>
 #include <vector>
 
 namespace osgVolumizer {
 namespace render {
+
+namespace {
+
+// Releases textures in a context until those that are left have no more bytes than there is room
+// for.
+void keepWithin(std::int64_t room, const std::vector<osg::ref_ptr<ResidentTexture>>& textures,
+                osg::State& state)
+{
+    std::int64_t held = 0;
+    std::vector<std::tuple<unsigned, float, ResidentTexture*>> byUse;
+    for (const auto& texture : textures) {
+        if (!texture->isIn(state.getContextID())) continue;
+        held += texture->bytes();
+        byUse.emplace_back(texture->lastFrame(), texture->priority(), texture.get());
+    }
+    if (held <= room) return;
+    std::sort(byUse.begin(), byUse.end());
+    for (auto next = byUse.begin(); held > room && next != byUse.end(); ++next) {
+        ResidentTexture& texture = *std::get<2>(*next);
+        held -= texture.bytes();
+        texture.releaseGLObjects(&state);
+    }
+}
+
+} // namespace
 
 osg::ref_ptr<BrickResidency> BrickResidency::of(const Voxels& voxels)
 {
@@ -27,40 +56,45 @@ osg::ref_ptr<const osg::Image> BrickResidency::texels(const Voxels& voxels, std:
     return makeTexels(voxels, block, voxels.getLayout().brick(brick).samples.size(), gradients);
 }
 
-osg::ref_ptr<BrickTexture> BrickResidency::get(const Voxels& voxels, std::int64_t brick,
-                                               bool gradients, unsigned frame)
+osg::ref_ptr<BrickTexture> BrickResidency::ask(const Voxels& voxels, const BrickRequest& request)
 {
+    const std::int64_t brick = request.brick;
+    const Key key{brick, request.gradients};
     const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
+    const auto answer = [&request](const Entry& entry) {
+        if (entry.texture) entry.texture->setUse(request.frame, request.priority);
+        return entry.texture;
+    };
     {
         std::lock_guard<std::mutex> lock(_mutex);
-        const auto found = _entries.find({brick, gradients});
+        const auto found = _entries.find(key);
         if (found != _entries.end() && found->second.modifiedCount == modified &&
-            found->second.layoutCount == layout) {
-            found->second.lastFrame = frame;
-            return found->second.texture;
-        }
+            found->second.layoutCount == layout)
+            return answer(found->second);
     }
     const bool readable = _cells.isScanned(voxels, brick) || load(voxels, brick);
     std::lock_guard<std::mutex> lock(_mutex);
-    Entry& entry = _entries[{brick, gradients}];
+    Entry& entry = _entries[key];
     // Another thread may have been first.
     if (entry.modifiedCount != modified || entry.layoutCount != layout || !entry.texture) {
-        entry = {nullptr, modified, layout, frame};
+        entry = {nullptr, modified, layout};
         if (readable)
-            entry.texture = new BrickTexture(texelFormat(voxels, gradients),
+            entry.texture = new BrickTexture(texelFormat(voxels, request.gradients),
                                              voxels.getLayout().brick(brick).samples.size(),
                                              core::sampleCount(voxels.getSize()));
     }
-    return entry.texture;
+    return answer(entry);
 }
 
-osg::ref_ptr<JoinedTexture> BrickResidency::joined(const Voxels& voxels, bool gradients)
+osg::ref_ptr<JoinedTexture> BrickResidency::joined(const Voxels& voxels, bool gradients,
+                                                   unsigned frame)
 {
     std::lock_guard<std::mutex> lock(_mutex);
     JoinedEntry& entry = _joined[gradients];
     if (!entry.texture || entry.layoutCount != voxels.getLayoutCount())
         entry = {new JoinedTexture(texelFormat(voxels, gradients), voxels.getSize()),
                  voxels.getLayoutCount()};
+    entry.texture->setUse(frame, std::numeric_limits<float>::max());
     return entry.texture;
 }
 
@@ -118,8 +152,36 @@ Residency BrickResidency::residency(const Voxels& voxels, std::int64_t brick, bo
 unsigned BrickResidency::lastUse(std::int64_t brick, bool gradients) const
 {
     std::lock_guard<std::mutex> lock(_mutex);
-    const auto found = _entries.find({brick, gradients});
-    return found == _entries.end() ? 0 : found->second.lastFrame;
+    const osg::ref_ptr<ResidentTexture> texture = textureOf({brick, gradients});
+    return texture ? texture->lastFrame() : 0;
+}
+
+// Expects the lock.
+osg::ref_ptr<ResidentTexture> BrickResidency::textureOf(const Key& key) const
+{
+    if (key.first == ALL_BRICKS) {
+        const auto joined = _joined.find(key.second);
+        return joined == _joined.end() ? nullptr : joined->second.texture.get();
+    }
+    const auto found = _entries.find(key);
+    return found == _entries.end() ? nullptr : found->second.texture.get();
+}
+
+void BrickResidency::makeRoom(osg::State& state, std::int64_t brick, bool gradients,
+                              const ResidentTexture& texture)
+{
+    std::vector<osg::ref_ptr<ResidentTexture>> others;
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        std::set<Key>& uploaded = _uploaded[state.getContextID()];
+        uploaded.insert({brick, gradients});
+        if (_budget == UNLIMITED) return;
+        for (const Key& key : uploaded) {
+            const osg::ref_ptr<ResidentTexture> other = textureOf(key);
+            if (other && other != &texture) others.push_back(other);
+        }
+    }
+    keepWithin(_budget - texture.bytes(), others, state);
 }
 
 std::int64_t BrickResidency::bytes(unsigned contextId) const

@@ -3,6 +3,7 @@
 #include "../context/Allocation.h"
 #include "../context/ReportOnce.h"
 #include "../context/Statistics.h"
+#include "Texels.h"
 
 #include "../../core/Text.h"
 #include "../../core/voxels/VoxelData.h"

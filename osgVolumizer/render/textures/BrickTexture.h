@@ -2,10 +2,10 @@
 
 #include "../context/ContextLimits.h"
 #include "CoarseTexture.h"
+#include "ResidentTexture.h"
 #include "TexelFormat.h"
 
-#include "../../Voxels.h"
-
+#include <osg/Image>
 #include <osg/RenderInfo>
 #include <osg/Texture3D>
 
@@ -20,7 +20,7 @@ namespace render {
 
 /// One brick, in one state of its data, as a texture in each context that has drawn it. Keeps no
 /// texels: they are asked for when a context lacks them. Thread safe.
-class BrickTexture : public osg::Referenced
+class BrickTexture : public ResidentTexture
 {
 public:
     /// The brick's texels; null where the source fails.
@@ -36,12 +36,11 @@ public:
     /// what is uploaded. Call in the draw thread.
     CoarseTexture apply(osg::RenderInfo& renderInfo, const ContextLimits& limits, const Load& load,
                         unsigned unit);
-    bool isIn(unsigned contextId) const;
-    /// Of the texels as they are uploaded.
-    std::int64_t bytes() const;
+    bool isIn(unsigned contextId) const override;
+    std::int64_t bytes() const override;
 
-    void resizeGLObjectBuffers(unsigned int maximum);
-    void releaseGLObjects(osg::State* state);
+    void resizeGLObjectBuffers(unsigned int maximum) override;
+    void releaseGLObjects(osg::State* state) override;
 
 private:
     struct Copy

@@ -8,9 +8,12 @@ namespace render {
 CoarseTexture DrawnBrick::apply(osg::RenderInfo& renderInfo, const ContextLimits& limits,
                                 unsigned unit) const
 {
-    return texture->apply(
-        renderInfo, limits, [this]() { return BrickResidency::texels(*voxels, index, gradients); },
-        unit);
+    // Called where the context lacks the texture.
+    const auto load = [&]() {
+        BrickResidency::of(*voxels)->makeRoom(*renderInfo.getState(), index, gradients, *texture);
+        return BrickResidency::texels(*voxels, index, gradients);
+    };
+    return texture->apply(renderInfo, limits, load, unit);
 }
 
 } // namespace render

@@ -3,6 +3,7 @@
 #include "../context/Allocation.h"
 #include "../context/ReportOnce.h"
 #include "BrickTexture.h"
+#include "Texels.h"
 
 #include "../../core/Text.h"
 #include "../../core/voxels/VoxelData.h"
@@ -136,12 +137,11 @@ void JoinedTexture::writeEmpty(osg::State& state, const JoinedPiece& piece, Cont
     contents.bricks[piece.brick] = {piece.modifiedCount, true, piece.samples};
 }
 
-bool JoinedTexture::apply(osg::RenderInfo& renderInfo, const ContextLimits& limits,
-                          const std::vector<JoinedPiece>& pieces, const Load& load, unsigned unit)
+// Applies the texture, and writes the empty pieces; gives those whose texels have to be loaded.
+bool JoinedTexture::prepare(osg::State& state, const ContextLimits& limits,
+                            const std::vector<JoinedPiece>& pieces, Contents& contents,
+                            unsigned unit, std::vector<const JoinedPiece*>& lacking) const
 {
-    osg::State& state = *renderInfo.getState();
-    const std::shared_ptr<Contents> held = contentsIn(state.getContextID());
-    Contents& contents = *held;
     std::lock_guard<std::mutex> lock(contents.mutex);
     if (contents.refused) return false;
     state.unbindPixelBufferObject();
@@ -156,14 +156,36 @@ bool JoinedTexture::apply(osg::RenderInfo& renderInfo, const ContextLimits& limi
     // Empty bricks first, since they share samples with others, which are then written again.
     for (const JoinedPiece& piece : pieces)
         if (piece.emptyTexel && lacks(piece)) writeEmpty(state, piece, contents);
+    for (const JoinedPiece& piece : pieces)
+        if (!piece.emptyTexel && lacks(piece)) lacking.push_back(&piece);
+    return true;
+}
+
+// False where the texture has been released meanwhile.
+bool JoinedTexture::write(osg::State& state, const JoinedPiece& piece, const osg::Image& texels,
+                          Contents& contents)
+{
+    std::lock_guard<std::mutex> lock(contents.mutex);
+    if (!contents.texture || !contents.texture->getTextureObject(state.getContextID()))
+        return false;
+    writeTexels(state, texels, piece.samples.min - piece.texelsOrigin, piece.samples.min,
+                piece.samples.size());
+    contents.bricks[piece.brick] = {piece.modifiedCount, false, piece.samples};
+    return true;
+}
+
+bool JoinedTexture::apply(osg::RenderInfo& renderInfo, const ContextLimits& limits,
+                          const std::vector<JoinedPiece>& pieces, const Load& load, unsigned unit)
+{
+    osg::State& state = *renderInfo.getState();
+    const std::shared_ptr<Contents> contents = contentsIn(state.getContextID());
+    std::vector<const JoinedPiece*> lacking;
+    if (!prepare(state, limits, pieces, *contents, unit, lacking)) return false;
     double bricks = 0.0, bytes = 0.0;
-    for (const JoinedPiece& piece : pieces) {
-        if (piece.emptyTexel || !lacks(piece)) continue;
-        const osg::ref_ptr<const osg::Image> texels = load(piece.brick);
+    for (const JoinedPiece* piece : lacking) {
+        const osg::ref_ptr<const osg::Image> texels = load(piece->brick);
         if (!texels) continue;
-        writeTexels(state, *texels, piece.samples.min - piece.texelsOrigin, piece.samples.min,
-                    piece.samples.size());
-        contents.bricks[piece.brick] = {piece.modifiedCount, false, piece.samples};
+        if (!write(state, *piece, *texels, *contents)) break;
         bricks += 1.0;
         bytes += double(texelBytes(*texels)) * texels->s() * texels->t() * texels->r();
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../context/ContextLimits.h"
+#include "ResidentTexture.h"
 #include "TexelFormat.h"
 
 #include "../../core/geometry/Box.h"
@@ -36,7 +37,7 @@ struct JoinedPiece
 /// One 3D texture for all bricks of a volume: drawn as one brick, but read, uploaded and changed
 /// brick by brick. Per context it has those bricks that its views have needed. Keeps no texels:
 /// they are asked for when a context lacks them. Thread safe.
-class JoinedTexture : public osg::Referenced
+class JoinedTexture : public ResidentTexture
 {
 public:
     /// A brick's texels; null where the source fails.
@@ -56,11 +57,11 @@ public:
     /// Whether the context has the texels of a brick in one state of its data, or what stands for
     /// them.
     bool has(unsigned contextId, std::int64_t brick, unsigned modifiedCount) const;
-    bool isIn(unsigned contextId) const;
-    std::int64_t bytes() const;
+    bool isIn(unsigned contextId) const override;
+    std::int64_t bytes() const override;
 
-    void resizeGLObjectBuffers(unsigned int maximum);
-    void releaseGLObjects(osg::State* state);
+    void resizeGLObjectBuffers(unsigned int maximum) override;
+    void releaseGLObjects(osg::State* state) override;
 
 private:
     struct Written
@@ -71,7 +72,7 @@ private:
     };
     struct Contents
     {
-        std::mutex mutex;
+        std::mutex mutex; ///< of what follows; not held while texels are loaded
         osg::ref_ptr<osg::Texture3D> texture;
         std::map<std::int64_t, Written> bricks;
         std::atomic<bool> refused{false};
@@ -84,7 +85,12 @@ private:
     std::vector<std::pair<unsigned, std::shared_ptr<Contents>>> allContents() const;
     bool make(osg::State& state, const ContextLimits& limits, Contents& contents,
               unsigned unit) const;
+    bool prepare(osg::State& state, const ContextLimits& limits,
+                 const std::vector<JoinedPiece>& pieces, Contents& contents, unsigned unit,
+                 std::vector<const JoinedPiece*>& lacking) const;
     static void writeEmpty(osg::State& state, const JoinedPiece& piece, Contents& contents);
+    static bool write(osg::State& state, const JoinedPiece& piece, const osg::Image& texels,
+                      Contents& contents);
 
     const TexelFormat _format;
     const glm::ivec3 _size;

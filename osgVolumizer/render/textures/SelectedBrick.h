@@ -2,9 +2,13 @@
 
 #include "BrickCells.h"
 #include "DrawnBrick.h"
-#include "JoinedTexture.h"
 
-#include <vector>
+#include "../../core/geometry/Box.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <memory>
 
 namespace osgVolumizer {
 namespace render {
@@ -22,16 +26,6 @@ struct SelectedBrick
     std::shared_ptr<const BrickCells> cells;    ///< null where nothing is known
     std::shared_ptr<const JoinedBricks> joined; ///< null for one brick with a texture of its own
     int brickCount = 1;                         ///< how many it stands for
-};
-
-/// The bricks of a volume that a view needs, in the texture that they share.
-struct JoinedBricks
-{
-    osg::ref_ptr<JoinedTexture> texture;
-    std::vector<JoinedPiece> pieces;
-    osg::ref_ptr<const Voxels> voxels;
-    bool gradients = false;
-    std::vector<SelectedBrick> apart; ///< to draw one by one where the card refuses the texture
 };
 
 } // namespace render

@@ -13,6 +13,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <list>
 #include <utility>
 
 namespace osgVolumizer {
@@ -162,6 +163,12 @@ bool TableTexture::shows(double lowFraction, double highFraction) const
            (integrals && (*shownGaps)[end] > (*shownGaps)[first]);
 }
 
+core::ExtinctionTable TableTexture::entries() const
+{
+    if (!texture) return {};
+    return {reinterpret_cast<const glm::vec4*>(texture->getImage()->data()), count, integrals};
+}
+
 bool applyTable(osg::State& state, osg::TextureBuffer* texture, unsigned unit)
 {
     if (applyAllocated(state, AllocationRequest::TABLE, *texture, unit)) return true;
@@ -176,32 +183,24 @@ TableTexture TableTextures::get(const LookupTable& table, const osg::Vec2d& rang
     if (lookup == VolumeAppearance::BEFORE_INTERPOLATION)
         lookup = VolumeAppearance::AFTER_INTERPOLATION;
     const unsigned modified = table.getModifiedCount();
+    const Key key{&table, modified, range, lookup};
     std::lock_guard<std::mutex> lock(_mutex);
-    for (auto i = _entries.begin(); i != _entries.end(); ++i) {
-        if (i->table != &table || i->modifiedCount != modified || i->range != range ||
-            i->lookup != lookup)
-            continue;
-        _entries.splice(_entries.begin(), _entries, i);
-        return *_entries.front().texture;
-    }
-    _entries.push_front({&table, modified, range, lookup,
-                         SharedTables::of(table)->get(table, {modified, range, lookup})});
-    if (_entries.size() > CAPACITY) _entries.pop_back();
-    return *_entries.front().texture;
+    if (const auto* known = _tables.find(key)) return **known;
+    return *_tables.add(key, SharedTables::of(table)->get(table, {modified, range, lookup}));
 }
 
 void TableTextures::resizeGLObjectBuffers(unsigned int maximum)
 {
     std::lock_guard<std::mutex> lock(_mutex);
-    for (auto& entry : _entries)
-        entry.texture->texture->resizeGLObjectBuffers(maximum);
+    for (const auto& entry : _tables)
+        entry.value->texture->resizeGLObjectBuffers(maximum);
 }
 
 void TableTextures::releaseGLObjects(osg::State* state) const
 {
     std::lock_guard<std::mutex> lock(_mutex);
-    for (const auto& entry : _entries)
-        entry.texture->texture->releaseGLObjects(state);
+    for (const auto& entry : _tables)
+        entry.value->texture->releaseGLObjects(state);
 }
 
 } // namespace render

@@ -1,12 +1,13 @@
 #pragma once
 
 #include "../../VolumeAppearance.h"
+#include "../../core/RecencyCache.h"
+#include "../../core/transfer/ExtinctionTable.h"
 
 #include <osg/TextureBuffer>
 
 #include <glm/vec4.hpp>
 
-#include <list>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -14,11 +15,8 @@
 namespace osgVolumizer {
 namespace render {
 
-/// A lookup table as a texture buffer, read at the nearest entry, which on some devices costs a
-/// third of what a filtered texture does. Entry i of count is at i/(count-1) of the voxels' range:
-/// colour, and extinction in bits per opacity unit. Where there are integrals, count + 1 texels
-/// follow: the integral of extinction times colour, and of extinction, up to half an entry before
-/// each, in entries, so that the difference of two over the difference of their indices is a mean.
+/// A core::ExtinctionTable as a texture buffer, read at the nearest entry, which on some devices
+/// costs a third of what a filtered texture does.
 struct TableTexture
 {
     osg::ref_ptr<osg::TextureBuffer> texture;
@@ -33,6 +31,8 @@ struct TableTexture
     /// Whether anything is shown of values between two fractions of the range, low <= high, the way
     /// the table is read: at entries, or over runs of them.
     bool shows(double lowFraction, double highFraction) const;
+    /// The texels in memory, for as long as there is the texture; empty where that is null.
+    core::ExtinctionTable entries() const;
     unsigned id = 0; ///< differs for every texture ever made
 };
 
@@ -52,18 +52,22 @@ public:
     void releaseGLObjects(osg::State* state) const;
 
 private:
-    struct Entry
+    struct Key
     {
         osg::ref_ptr<const LookupTable> table;
         unsigned modifiedCount;
         osg::Vec2d range;
         VolumeAppearance::Lookup lookup;
-        std::shared_ptr<const TableTexture> texture;
+        bool operator==(const Key& o) const
+        {
+            return table == o.table && modifiedCount == o.modifiedCount && range == o.range &&
+                   lookup == o.lookup;
+        }
     };
     static constexpr std::size_t CAPACITY = 3;
 
     mutable std::mutex _mutex;
-    std::list<Entry> _entries; ///< most recent first
+    core::RecencyCache<Key, std::shared_ptr<const TableTexture>> _tables{CAPACITY};
 };
 
 } // namespace render

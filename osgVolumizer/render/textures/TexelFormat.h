@@ -4,7 +4,6 @@
 
 #include "../../Voxels.h"
 
-#include <osg/Image>
 #include <osg/Texture3D>
 
 #include <glm/vec2.hpp>
@@ -30,19 +29,15 @@ struct TexelFormat
 /// `gradients`: central differences in red, green and blue, see gradientDecode(), and the value in
 /// alpha.
 TexelFormat texelFormat(const Voxels& voxels, bool gradients);
-/// What samples become in a texture, as an image that refers to the block where nothing has to
-/// change.
-osg::ref_ptr<osg::Image> makeTexels(const Voxels& voxels, const VoxelBlock& block,
-                                    const glm::ivec3& size, bool gradients);
+/// Smallest value of the signed types that are moved up, which their texels are counted from; 0 for
+/// others.
+double lowestSigned(VoxelType type);
 
 /// A texture of a format and a size without an image, interpolated, as suits a context.
 /// \param volumeTexels of all the volume, whose other bricks have textures like this
 osg::ref_ptr<osg::Texture3D> makeVoxelTexture(const TexelFormat& format, const glm::ivec3& size,
                                               std::int64_t volumeTexels,
                                               const ContextLimits& limits);
-/// Writes a box of a texture that is bound. \param first of the image's texels that are written
-void writeTexels(osg::State& state, const osg::Image& texels, const glm::ivec3& first,
-                 const glm::ivec3& at, const glm::ivec3& size);
 
 /// Scale and offset from a texel, as the shader reads it, to the fraction of the voxels' range.
 glm::dvec2 texelToRangeFraction(const Voxels& voxels);

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "../../core/RecencyCache.h"
 #include "PreparedGeometry.h"
 
-#include <list>
 #include <memory>
 #include <mutex>
 
@@ -24,18 +24,22 @@ public:
                                                 const Voxels* voxels);
 
 private:
-    struct Entry
+    struct Key
     {
         unsigned geometryCount;
         const Voxels* voxels;
         unsigned layoutCount;
-        std::shared_ptr<const PreparedGeometry> prepared;
+        bool operator==(const Key& o) const
+        {
+            return geometryCount == o.geometryCount && voxels == o.voxels &&
+                   layoutCount == o.layoutCount;
+        }
     };
     static constexpr std::size_t CAPACITY = 4;
 
     std::shared_ptr<SliceCache> _slices;
     std::mutex _mutex;
-    std::list<Entry> _entries; ///< most recent first
+    core::RecencyCache<Key, std::shared_ptr<const PreparedGeometry>> _prepared{CAPACITY};
 };
 
 } // namespace render

@@ -22,15 +22,15 @@ SliceCache::TrianglesPtr SliceCache::triangles(std::uint64_t viewId, const Faces
 {
     {
         const std::lock_guard<std::mutex> lock(_mutex);
-        const auto kept = _kept.find(viewId);
-        if (kept != _kept.end() && kept->second.faces == faces)
-            for (const Part& part : kept->second.parts)
+        const Kept* kept = _kept.find(viewId);
+        if (kept && kept->faces == faces)
+            for (const Part& part : kept->parts)
                 if (part.first == first && part.last == last) return part.triangles;
     }
     TrianglesPtr made = make();
     const std::lock_guard<std::mutex> lock(_mutex);
-    if (_kept.size() >= VIEWS && _kept.find(viewId) == _kept.end()) _kept.clear();
-    Kept& kept = _kept[viewId];
+    Kept* known = _kept.find(viewId);
+    Kept& kept = known ? *known : _kept.add(viewId, {});
     if (kept.faces != faces || kept.parts.size() >= PARTS) kept.parts.clear();
     kept.faces = faces;
     kept.parts.push_back({first, last, made});

@@ -2,6 +2,7 @@
 
 #include "../draw/VolumeMesh.h"
 
+#include "../../core/RecencyCache.h"
 #include "../../core/sampling/FaceCache.h"
 
 #include <osgUtil/CullVisitor>
@@ -10,7 +11,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <unordered_map>
 #include <vector>
 
 namespace osgVolumizer {
@@ -56,7 +56,7 @@ private:
 
     core::FaceCache _faces{VIEWS};
     std::mutex _mutex;
-    std::unordered_map<std::uint64_t, Kept> _kept;
+    core::RecencyCache<std::uint64_t, Kept> _kept{VIEWS}; ///< by view
 };
 
 } // namespace render

@@ -3,24 +3,18 @@
 #include "../textures/TableTextures.h"
 
 #include "../../Voxels.h"
+#include "../../core/RecencyCache.h"
+#include "../../core/accuracy/PeriodChoice.h"
 #include "../../core/geometry/Box.h"
 
 #include <glm/mat3x3.hpp>
 
-#include <list>
+#include <cstdint>
+#include <memory>
 #include <mutex>
 
 namespace osgVolumizer {
 namespace render {
-
-/// How finely a volume is sampled, and with which kind of table.
-struct SamplingChoice
-{
-    double periodVoxel = 1.0;
-    bool integrals = false;
-    double error =
-        0.0; ///< expected: root mean square over the components of pixels that show something
-};
 
 /// What a choice depends on, besides the data.
 struct SamplingQuestion
@@ -33,19 +27,17 @@ struct SamplingQuestion
     bool nearest = false;
 };
 
-/// The longest period, and the cheaper table, whose error is within a tolerance. Found by marching
-/// some random rays through the data itself, so it holds whatever the view: their values are
-/// sampled once, much more finely than any choice, and then integrated with periods of a geometric
-/// sequence, and compared. Reads the bricks that show something. Kept for the last few questions.
-/// Thread safe.
+/// Keeps the answers of core::choosePeriod() to the last few questions. Reads the bricks that show
+/// something. Thread safe; whoever asks what is just being chosen waits for it, other questions do
+/// not.
 class SamplingChoices
 {
 public:
     /// Expects voxels of one component.
-    SamplingChoice get(const Voxels& voxels, const SamplingQuestion& question);
+    core::PeriodChoice get(const Voxels& voxels, const SamplingQuestion& question);
 
 private:
-    struct Entry
+    struct Key
     {
         unsigned midpointsId, integralsId, layoutCount;
         std::uint64_t modified;
@@ -53,12 +45,20 @@ private:
         glm::dmat3 frameToUnits;
         core::Box3d box;
         bool nearest;
-        SamplingChoice choice;
+        bool operator==(const Key& o) const;
+    };
+    struct Answer
+    {
+        std::mutex mutex; ///< of what follows; held while it is chosen
+        bool known = false;
+        core::PeriodChoice choice;
     };
     static constexpr std::size_t CAPACITY = 4;
 
+    std::shared_ptr<Answer> answerTo(const Key& key);
+
     std::mutex _mutex;
-    std::list<Entry> _entries; ///< most recent first
+    core::RecencyCache<Key, std::shared_ptr<Answer>> _answers{CAPACITY};
 };
 
 } // namespace render

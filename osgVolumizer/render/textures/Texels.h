@@ -1,0 +1,22 @@
+#pragma once
+
+#include "../../Voxels.h"
+
+#include <osg/Image>
+#include <osg/State>
+
+#include <glm/vec3.hpp>
+
+namespace osgVolumizer {
+namespace render {
+
+/// What samples become in a texture, as an image that refers to the block where nothing has to
+/// change.
+osg::ref_ptr<osg::Image> makeTexels(const Voxels& voxels, const VoxelBlock& block,
+                                    const glm::ivec3& size, bool gradients);
+/// Writes a box of a texture that is bound. \param first of the image's texels that are written
+void writeTexels(osg::State& state, const osg::Image& texels, const glm::ivec3& first,
+                 const glm::ivec3& at, const glm::ivec3& size);
+
+} // namespace render
+} // namespace osgVolumizer
