@@ -4,8 +4,8 @@
 
 #include <osgVolumizer/Error.h>
 #include <osgVolumizer/render/context/Allocation.h>
-#include <osgVolumizer/render/textures/BrickResidency.h>
 #include <osgVolumizer/render/context/ContextLimits.h>
+#include <osgVolumizer/render/textures/BrickResidency.h>
 
 #include <support/GLTest.h>
 
@@ -90,7 +90,7 @@ protected:
     {
         osg::ref_ptr<Voxels> voxels = makeVoxels(size, bumps);
         EXPECT_TRUE(voxels->setOverlap(overlap));
-        EXPECT_TRUE(voxels->setBrickSize(glm::ivec3(brick)));
+        EXPECT_TRUE(voxels->setBrickSize({brick, brick, brick}));
         osg::ref_ptr<A> volume = makeVolume(voxels);
         volume->setTechnique(A::SLABS);
         volume->setLookupTable(makeTable(smoothPoints(0.2)));
@@ -344,7 +344,7 @@ osg::ref_ptr<A> makeLarge(int brick, osg::ref_ptr<BytesSource>& source)
 {
     source = new BytesSource(LARGE);
     osg::ref_ptr<Voxels> voxels = new Voxels(source);
-    EXPECT_TRUE(voxels->setBrickSize(glm::ivec3(brick)));
+    EXPECT_TRUE(voxels->setBrickSize({brick, brick, brick}));
     osg::ref_ptr<A> volume = makeVolume(voxels);
     volume->setTechnique(A::SLABS);
     volume->setLookupTable(makeTable(smoothPoints(0.2)));

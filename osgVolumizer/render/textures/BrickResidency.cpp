@@ -1,5 +1,7 @@
 #include "BrickResidency.h"
 
+#include "../context/RenderDataAccess.h"
+
 #include "../../core/voxels/VoxelData.h"
 
 #include <vector>
@@ -9,9 +11,7 @@ namespace render {
 
 osg::ref_ptr<BrickResidency> BrickResidency::of(const Voxels& voxels)
 {
-    const auto data = voxels.renderData().getOrCreate(
-        []() -> osg::ref_ptr<RenderData> { return new BrickResidency; });
-    return static_cast<BrickResidency*>(data.get());
+    return renderData<BrickResidency>(voxels);
 }
 
 VoxelBlock BrickResidency::load(const Voxels& voxels, std::int64_t brick)
@@ -49,7 +49,7 @@ osg::ref_ptr<BrickTexture> BrickResidency::get(const Voxels& voxels, std::int64_
         if (readable)
             entry.texture = new BrickTexture(texelFormat(voxels, gradients),
                                              voxels.getLayout().brick(brick).samples.size(),
-                                             core::sampleCount(voxels.getSize()));
+                                             core::sampleCount(voxels.getLayout().size()));
     }
     return entry.texture;
 }
@@ -59,7 +59,7 @@ osg::ref_ptr<JoinedTexture> BrickResidency::joined(const Voxels& voxels, bool gr
     std::lock_guard<std::mutex> lock(_mutex);
     JoinedEntry& entry = _joined[gradients];
     if (!entry.texture || entry.layoutCount != voxels.getLayoutCount())
-        entry = {new JoinedTexture(texelFormat(voxels, gradients), voxels.getSize()),
+        entry = {new JoinedTexture(texelFormat(voxels, gradients), voxels.getLayout().size()),
                  voxels.getLayoutCount()};
     return entry.texture;
 }
