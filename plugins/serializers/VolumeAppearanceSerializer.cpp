@@ -133,7 +133,7 @@ Property accumulationBits()
 {
     return {"AccumulationBits",
             [](const VolumeAppearance& a) { return Field::Integers{a.getAccumulationBits()}; },
-            [](const Record& record, VolumeAppearance& a) {
+            [](const Record& record, VolumeAppearance& a) -> Status {
                 Field::Integers bits;
                 const Status status = record.get("AccumulationBits", 1, bits);
                 if (!status.ok()) return status;
