@@ -24,6 +24,8 @@ Channel& channel()
     return *instance;
 }
 
+thread_local int callersThatReport = 0;
+
 } // namespace
 
 void setErrorHandler(ErrorHandler* handler)
@@ -63,6 +65,22 @@ void reportError(const Status& status)
         OSG_WARN << "osgVolumizer: " << status.text << " [" << errorName(status.code) << "]"
                  << std::endl;
     if (handler.valid()) (*handler)(status);
+}
+
+ReportedStatus reported(Status status)
+{
+    if (callersThatReport == 0) reportError(status);
+    return ReportedStatus(std::move(status));
+}
+
+CallerReports::CallerReports()
+{
+    ++callersThatReport;
+}
+
+CallerReports::~CallerReports()
+{
+    --callersThatReport;
 }
 
 } // namespace osgVolumizer

@@ -8,9 +8,10 @@ install(TARGETS osgVolumizerCore EXPORT osgVolumizerCoreTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS osgVolumizer EXPORT osgVolumizerTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-# render/ and io/ are how it is done, not what is offered.
+# render/, io/ and folders named private/ are how it is done, not what is offered.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/osgVolumizer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        FILES_MATCHING PATTERN "*.h" PATTERN "render" EXCLUDE PATTERN "io" EXCLUDE)
+        FILES_MATCHING PATTERN "*.h" PATTERN "render" EXCLUDE PATTERN "io" EXCLUDE
+        PATTERN "private" EXCLUDE)
 
 foreach(set osgVolumizerCoreTargets osgVolumizerTargets)
   install(EXPORT ${set} NAMESPACE osgVolumizer:: DESTINATION ${package_dir})

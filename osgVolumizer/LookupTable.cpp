@@ -32,18 +32,19 @@ void LookupTable::assign(core::TransferFunction function, Domain domain)
     _modifiedCount = ++lastCount;
 }
 
-Status LookupTable::setPoints(LookupPoints points, Domain domain)
+ReportedStatus LookupTable::setPoints(LookupPoints points, Domain domain)
 {
     if (domain != RANGE_FRACTION && domain != DATA_VALUES)
-        return {ErrorCode::VALUE_INVALID,
-                "lookup table domain " + std::to_string(static_cast<int>(domain)) + " is unknown"};
+        return reported(
+            {ErrorCode::VALUE_INVALID,
+             "lookup table domain " + std::to_string(static_cast<int>(domain)) + " is unknown"});
     Result<core::TransferFunction> function = core::TransferFunction::create(std::move(points));
-    if (!function.ok()) return function.status;
+    if (!function.ok()) return reported(function.status);
     assign(std::move(*function), domain);
     return {};
 }
 
-Status LookupTable::setEntries(const std::vector<osg::Vec4>& entries)
+ReportedStatus LookupTable::setEntries(const std::vector<osg::Vec4>& entries)
 {
     std::vector<glm::dvec4> colors;
     colors.reserve(entries.size());
@@ -51,13 +52,13 @@ Status LookupTable::setEntries(const std::vector<osg::Vec4>& entries)
         colors.emplace_back(static_cast<double>(e.r()), static_cast<double>(e.g()),
                             static_cast<double>(e.b()), static_cast<double>(e.a()));
     Result<core::TransferFunction> function = core::TransferFunction::createUniform(colors);
-    if (!function.ok()) return function.status;
+    if (!function.ok()) return reported(function.status);
     assign(std::move(*function), RANGE_FRACTION);
     return {};
 }
 
-Status LookupTable::setRamp(double centre, double width, const osg::Vec3& color,
-                            double maximumOpacity)
+ReportedStatus LookupTable::setRamp(double centre, double width, const osg::Vec3& color,
+                                    double maximumOpacity)
 {
     const glm::dvec4 full(static_cast<double>(color.x()), static_cast<double>(color.y()),
                           static_cast<double>(color.z()), maximumOpacity);

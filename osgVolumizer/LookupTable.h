@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Error.h"
 #include "RenderData.h"
 #include "core/Export.h"
 #include "core/transfer/TransferFunction.h"
@@ -29,12 +30,13 @@ using LookupPoints = std::vector<core::TransferFunction::Point>;
 class OSGVOLUMIZER_EXPORT LookupTable : public osg::Object
 {
 public:
-    META_Object(osgVolumizer, LookupTable)
+    META_Object(osgVolumizer, LookupTable);
 
-        enum Domain {
-            RANGE_FRACTION,
-            DATA_VALUES
-        };
+    enum Domain
+    {
+        RANGE_FRACTION,
+        DATA_VALUES
+    };
     using Function = std::shared_ptr<const core::TransferFunction>;
 
     /// A white ramp over the whole range: setRamp(0.5, 1).
@@ -43,13 +45,13 @@ public:
     LookupTable(const LookupTable& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
     /// See core::TransferFunction::create for what is refused; the table then keeps what it had.
-    Status setPoints(LookupPoints points, Domain domain);
+    ReportedStatus setPoints(LookupPoints points, Domain domain);
     /// Entry i of n at i/(n-1) of the range.
-    Status setEntries(const std::vector<osg::Vec4>& entries);
+    ReportedStatus setEntries(const std::vector<osg::Vec4>& entries);
     /// Opacity (and brightness) rising from 0 to 1 over `width` about `centre`, both fractions of
     /// the range; a negative width makes it fall, none makes it jump.
-    Status setRamp(double centre, double width, const osg::Vec3& color = osg::Vec3(1, 1, 1),
-                   double maximumOpacity = 1.0);
+    ReportedStatus setRamp(double centre, double width, const osg::Vec3& color = osg::Vec3(1, 1, 1),
+                           double maximumOpacity = 1.0);
 
     Function getFunction() const;
     Domain getDomain() const;
@@ -62,13 +64,11 @@ public:
     void setFileName(const std::string& name) { _fileName = name; }
     const std::string& getFileName() const { return _fileName; }
 
-    /// The renderer's: textures, shared by all appearances that have the table.
-    RenderDataSlot& renderData() const { return _renderData; }
-
 protected:
     ~LookupTable() override = default;
 
 private:
+    friend struct RenderDataAccess;
     void assign(core::TransferFunction function, Domain domain);
 
     mutable std::mutex _mutex; // of the next two
@@ -76,7 +76,7 @@ private:
     Domain _domain = RANGE_FRACTION;
     std::atomic<unsigned> _modifiedCount;
     std::string _fileName;
-    mutable RenderDataSlot _renderData;
+    mutable RenderDataSlot _renderData; // textures, shared by all appearances that have the table
 };
 
 /// Reads a `.lut` (plain text, "value r g b a" per line in data values, '#' starts a comment) or

@@ -165,7 +165,8 @@ Result<osg::ref_ptr<LookupTable>> readLookupTable(const std::string& fileName,
         tf ? parseTransferFunctionFile(*text, fileName) : parseLookupTable(*text, fileName);
     if (!points.ok()) return points.status;
     osg::ref_ptr<LookupTable> table = new LookupTable;
-    Status status = table->setPoints(std::move(*points), LookupTable::DATA_VALUES);
+    const CallerReports quiet;
+    const Status status = table->setPoints(std::move(*points), LookupTable::DATA_VALUES);
     if (!status.ok()) return status;
     table->setFileName(fileName);
     return table;

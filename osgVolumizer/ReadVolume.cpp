@@ -33,7 +33,7 @@ osg::ref_ptr<LookupTable> createSuggestedTable(const Voxels& voxels)
     osg::ref_ptr<LookupTable> table = new LookupTable;
     if (!voxels.valid() || voxels.getComponents() != 1) return table;
     const osg::Vec2d range = voxels.getRange();
-    core::ScanStatistics statistics(voxels.getSize(), {range.x(), range.y()});
+    core::ScanStatistics statistics(voxels.getLayout().size(), {range.x(), range.y()});
     for (std::int64_t i = 0; i < voxels.getLayout().brickCount(); ++i) {
         const core::Box3i samples = voxels.getLayout().brick(i).samples;
         if (const Voxels::Block block = voxels.getBrick(i))
@@ -62,6 +62,7 @@ readVolume(const std::string& name, const osgDB::Options* options, const Progres
     } else {
         appearance->setLookupTable(createSuggestedTable(**voxels).get());
     }
+    const CallerReports quiet;
     if (said.unit)
         if (Status status = appearance->setOpacityUnit(*said.unit); !status.ok()) return status;
     appearance->addChild(VolumeGeometry::createBox(**voxels).get());

@@ -68,7 +68,10 @@ Status apply(Voxels& voxels, const io::VoxelOptions& options)
             voxels.setOrigin(osg::Vec3d(options.origin->x, options.origin->y, options.origin->z));
     if (status.ok() && options.range)
         status = voxels.setRange(osg::Vec2d(options.range->x, options.range->y));
-    if (status.ok() && options.brick) status = voxels.setBrickSize(*options.brick);
+    if (status.ok() && options.brick) {
+        const glm::ivec3& brick = *options.brick;
+        status = voxels.setBrickSize({brick.x, brick.y, brick.z});
+    }
     return status;
 }
 
@@ -77,6 +80,7 @@ Result<osg::ref_ptr<Voxels>> makeVoxels(const Result<io::Source>& source,
                                         const io::VoxelOptions& options, const std::string& name)
 {
     if (!source.ok()) return source.status;
+    const CallerReports quiet;
     osg::ref_ptr<Voxels> voxels = new Voxels;
     Status status = voxels->setSource(source->get());
     if (status.ok()) status = apply(*voxels, options);

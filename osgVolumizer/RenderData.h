@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/Export.h"
+
 #include <osg/Referenced>
 #include <osg/State>
 #include <osg/ref_ptr>
@@ -11,7 +13,7 @@ namespace osgVolumizer {
 
 /// What the renderer keeps with an object of the scene, for as long as that lives. Every method may
 /// be called from several threads.
-class RenderData : public osg::Referenced
+class OSGVOLUMIZER_EXPORT RenderData : public osg::Referenced
 {
 public:
     virtual void resizeGLObjectBuffers(unsigned int maximum) = 0;
@@ -21,7 +23,9 @@ protected:
     ~RenderData() override = default;
 };
 
-/// Where an object has it. Thread safe. A copy of the object has none of the original's.
+/// Where an object keeps its RenderData: a private member `_renderData` with RenderDataAccess as a
+/// friend, which is the renderer's. The object knows nothing of what is in it. Thread safe. A copy
+/// of the object has none of the original's.
 class RenderDataSlot
 {
 public:
@@ -41,6 +45,14 @@ public:
         std::lock_guard<std::mutex> lock(_mutex);
         if (!_data) _data = make();
         return _data;
+    }
+    void resizeGLObjectBuffers(unsigned int maximum)
+    {
+        if (const osg::ref_ptr<RenderData> data = get()) data->resizeGLObjectBuffers(maximum);
+    }
+    void releaseGLObjects(osg::State* state) const
+    {
+        if (const osg::ref_ptr<RenderData> data = get()) data->releaseGLObjects(state);
     }
 
 private:

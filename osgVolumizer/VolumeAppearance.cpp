@@ -1,27 +1,20 @@
 #include "VolumeAppearance.h"
 
-#include "Error.h"
 #include "core/NumberRule.h"
 #include "core/Text.h"
-#include "render/context/ContextResources.h"
-#include "render/context/SharedStateSets.h"
-#include "render/cull/Flattening.h"
-#include "render/cull/FrameTimes.h"
-#include "render/cull/SamplingChoices.h"
-#include "render/textures/TableTextures.h"
+#include "private/Flattening.h"
+#include "private/Renderer.h"
 
 namespace osgVolumizer {
 
 namespace {
 
-Status refuse(const VolumeAppearance& appearance, const char* field, double value,
-              const char* expected)
+ReportedStatus refuse(const VolumeAppearance& appearance, const char* field, double value,
+                      const char* expected)
 {
-    Status status(ErrorCode::VALUE_INVALID,
-                  "VolumeAppearance \"" + appearance.getName() + "\": " + field + " is " +
-                      core::formatNumber(value) + ", expected " + expected);
-    reportError(status);
-    return status;
+    return reported({ErrorCode::VALUE_INVALID,
+                     "VolumeAppearance \"" + appearance.getName() + "\": " + field + " is " +
+                         core::formatNumber(value) + ", expected " + expected});
 }
 
 /// The same object, or with DEEP_COPY_OBJECTS one of its own.
@@ -33,11 +26,7 @@ osg::ref_ptr<T> copied(const osg::ref_ptr<T>& object, const osg::CopyOp& op)
 
 } // namespace
 
-VolumeAppearance::VolumeAppearance()
-    : _lookupTable(new LookupTable), _tableTextures(new render::TableTextures),
-      _samplingChoices(new render::SamplingChoices), _frameTimes(new render::FrameTimes)
-{
-}
+VolumeAppearance::VolumeAppearance() : _lookupTable(new LookupTable) {}
 
 VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op)
     : osg::Group(o, op), _voxels(copied(o._voxels, op)), _lookupTable(copied(o._lookupTable, op)),
@@ -46,8 +35,7 @@ VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp&
       _shading(o._shading), _material(o._material), _gradients(o._gradients),
       _combineRule(o._combineRule), _accumulationBits(o._accumulationBits), _sampling(o._sampling),
       _errorTolerance(o._errorTolerance), _targetFrameTime(o._targetFrameTime),
-      _opacityUnit(o._opacityUnit), _tableTextures(new render::TableTextures),
-      _samplingChoices(new render::SamplingChoices), _frameTimes(new render::FrameTimes)
+      _opacityUnit(o._opacityUnit)
 {
 }
 
@@ -55,7 +43,7 @@ VolumeAppearance::~VolumeAppearance() = default;
 
 void VolumeAppearance::accept(osg::NodeVisitor& visitor)
 {
-    if (!visitor.validNodeMask(*this) || render::keepsTransforms(*this, visitor)) return;
+    if (!visitor.validNodeMask(*this) || keepsTransforms(*this, visitor)) return;
     visitor.pushOntoNodePath(this);
     visitor.apply(*this);
     visitor.popFromNodePath();
@@ -76,7 +64,7 @@ int VolumeAppearance::getRequiredOverlap() const
     return 1 + (_interpolation == CUBIC ? 2 : 0) + (_shading ? 2 : 0);
 }
 
-Status VolumeAppearance::setIsoValue(double dataValue)
+ReportedStatus VolumeAppearance::setIsoValue(double dataValue)
 {
     if (!core::FINITE.holds(dataValue))
         return refuse(*this, "iso-value", dataValue, core::FINITE.expected);
@@ -84,7 +72,7 @@ Status VolumeAppearance::setIsoValue(double dataValue)
     return {};
 }
 
-Status VolumeAppearance::setMaterial(const Material& material)
+ReportedStatus VolumeAppearance::setMaterial(const Material& material)
 {
     const struct
     {
@@ -101,7 +89,7 @@ Status VolumeAppearance::setMaterial(const Material& material)
     return {};
 }
 
-Status VolumeAppearance::setAccumulationBits(int bits)
+ReportedStatus VolumeAppearance::setAccumulationBits(int bits)
 {
     if (bits != 8 && bits != 16 && bits != 32)
         return refuse(*this, "accumulation bits", bits, "8, 16 or 32");
@@ -109,7 +97,7 @@ Status VolumeAppearance::setAccumulationBits(int bits)
     return {};
 }
 
-Status VolumeAppearance::setSamplingPeriod(const osg::Vec3d& periodVoxel)
+ReportedStatus VolumeAppearance::setSamplingPeriod(const osg::Vec3d& periodVoxel)
 {
     for (int i = 0; i < 3; ++i)
         if (!core::LENGTH.holds(periodVoxel[i]))
@@ -123,14 +111,14 @@ osg::Vec3d VolumeAppearance::getSamplingPeriod() const
     return {_sampling.periodVoxel.x, _sampling.periodVoxel.y, _sampling.periodVoxel.z};
 }
 
-Status VolumeAppearance::setMaximumSamples(int count)
+ReportedStatus VolumeAppearance::setMaximumSamples(int count)
 {
     if (count < 1) return refuse(*this, "maximum of samples", count, "at least 1");
     _sampling.maximumSamples = count;
     return {};
 }
 
-Status VolumeAppearance::setErrorTolerance(double rootMeanSquare)
+ReportedStatus VolumeAppearance::setErrorTolerance(double rootMeanSquare)
 {
     if (!core::NOT_NEGATIVE.holds(rootMeanSquare))
         return refuse(*this, "error tolerance", rootMeanSquare, core::NOT_NEGATIVE.expected);
@@ -138,7 +126,7 @@ Status VolumeAppearance::setErrorTolerance(double rootMeanSquare)
     return {};
 }
 
-Status VolumeAppearance::setTargetFrameTime(double seconds)
+ReportedStatus VolumeAppearance::setTargetFrameTime(double seconds)
 {
     if (!core::NOT_NEGATIVE.holds(seconds))
         return refuse(*this, "target frame time", seconds, core::NOT_NEGATIVE.expected);
@@ -146,7 +134,7 @@ Status VolumeAppearance::setTargetFrameTime(double seconds)
     return {};
 }
 
-Status VolumeAppearance::setOpacityUnit(double objectUnits)
+ReportedStatus VolumeAppearance::setOpacityUnit(double objectUnits)
 {
     if (!core::LENGTH_OR_NONE.holds(objectUnits))
         return refuse(*this, "opacity unit", objectUnits, core::LENGTH_OR_NONE.expected);
@@ -160,20 +148,27 @@ double VolumeAppearance::getEffectiveOpacityUnit() const
     return _voxels ? _voxels->getMeanSpacing() : 1.0;
 }
 
+VolumeAppearance::Settings
+VolumeAppearance::getSettingsInForce(const VolumeGeometry& geometry) const
+{
+    Renderer* renderer = getRenderer();
+    return renderer ? renderer->settingsInForce(*this, geometry) : Settings();
+}
+
 void VolumeAppearance::resizeGLObjectBuffers(unsigned int maximum)
 {
     osg::Group::resizeGLObjectBuffers(maximum);
     if (_voxels) _voxels->resizeGLObjectBuffers(maximum);
-    _tableTextures->resizeGLObjectBuffers(maximum);
-    render::resizeSharedStateSets(maximum);
+    _renderData.resizeGLObjectBuffers(maximum);
+    if (Renderer* renderer = getRenderer()) renderer->resizeGLObjectBuffers(maximum);
 }
 
 void VolumeAppearance::releaseGLObjects(osg::State* state) const
 {
     osg::Group::releaseGLObjects(state);
     if (_voxels) _voxels->releaseGLObjects(state);
-    _tableTextures->releaseGLObjects(state);
-    render::releaseContextResources(state);
+    _renderData.releaseGLObjects(state);
+    if (Renderer* renderer = getRenderer()) renderer->releaseGLObjects(state);
 }
 
 } // namespace osgVolumizer

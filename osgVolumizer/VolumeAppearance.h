@@ -1,19 +1,19 @@
 #pragma once
 
+#include "Error.h"
 #include "LookupTable.h"
+#include "RenderData.h"
 #include "Voxels.h"
 #include "core/sampling/Polygonize.h"
 
 #include <osg/Group>
 
-#include <memory>
+#include <string>
+#include <vector>
 
 namespace osgVolumizer {
-namespace render {
-class FrameTimes;
-class SamplingChoices;
-class TableTextures;
-} // namespace render
+
+class VolumeGeometry;
 
 /// What the volume geometry below is filled with: voxels, lookup table, sampling, shading.
 class OSGVOLUMIZER_EXPORT VolumeAppearance : public osg::Group
@@ -27,10 +27,11 @@ public:
         SLICES,
         SLABS
     };
-    /// How a value between samples comes about. NEAREST: that of the nearest sample. LINEAR:
-    /// trilinear. CUBIC: passes through the samples like LINEAR, with continuous derivatives and
-    /// third-order accuracy, and may overshoot (Keys, "Cubic convolution interpolation for digital
-    /// image processing", IEEE ASSP 29, 1981); 64 samples each, so slow; bricks need overlap 3.
+    /// How values between samples are interpolated. NEAREST: the value of the nearest sample.
+    /// LINEAR: trilinear. CUBIC: passes through the samples like LINEAR, with continuous
+    /// derivatives and third-order accuracy, and may overshoot (Keys, "Cubic convolution
+    /// interpolation for digital image processing", IEEE ASSP 29, 1981); 64 samples each, so slow;
+    /// bricks need overlap 3.
     enum Interpolation
     {
         NEAREST,
@@ -139,7 +140,7 @@ public:
     void setRayFunction(RayFunction function) { _rayFunction = function; }
     RayFunction getRayFunction() const { return _rayFunction; }
     /// Of ISOSURFACE, as a data value; finite. Default 0.5.
-    Status setIsoValue(double dataValue);
+    ReportedStatus setIsoValue(double dataValue);
     double getIsoValue() const { return _isoValue; }
 
     /// Lights the volume with the scene's lights (osg::LightSource, the viewer's head light; up to
@@ -154,7 +155,7 @@ public:
     {
         double ambient = 0.2, diffuse = 0.8, specular = 0.3, shininess = 32.0;
     };
-    Status setMaterial(const Material& material);
+    ReportedStatus setMaterial(const Material& material);
     const Material& getMaterial() const { return _material; }
     void setCombineRule(CombineRule rule) { _combineRule = rule; }
     CombineRule getCombineRule() const { return _combineRule; }
@@ -163,7 +164,7 @@ public:
 
     /// Bits per colour channel, 8, 16 or 32 (default), that volumes are accumulated in, whatever
     /// the framebuffer has; in one view the largest of its volumes. 8 bits round every blend.
-    Status setAccumulationBits(int bits);
+    ReportedStatus setAccumulationBits(int bits);
     int getAccumulationBits() const { return _accumulationBits; }
 
     /// Samples that bricks must share for interpolation and shading to show no seams: 1, and 2 more
@@ -177,11 +178,11 @@ public:
     SamplingSpace getSamplingSpace() const { return _sampling.space; }
     /// Distance between samples along the view, in voxels, per voxel axis; default 1. Each
     /// from 1e-18 to 1e18, which floats can still square.
-    Status setSamplingPeriod(const osg::Vec3d& periodVoxel);
+    ReportedStatus setSamplingPeriod(const osg::Vec3d& periodVoxel);
     osg::Vec3d getSamplingPeriod() const;
     /// Bound on the number of sampling surfaces; >= 1, default 4096. The largest int is none; but
     /// no view takes more than 65536, whatever period and bound ask for.
-    Status setMaximumSamples(int count);
+    ReportedStatus setMaximumSamples(int count);
     int getMaximumSamples() const { return _sampling.maximumSamples; }
     const core::SamplingParameters& getSamplingParameters() const { return _sampling; }
 
@@ -193,35 +194,47 @@ public:
     /// rays graze a jump may have more.
     /// Composited slabs of voxels of one component, without shading. 0 (default): as the period
     /// says.
-    Status setErrorTolerance(double rootMeanSquare);
+    ReportedStatus setErrorTolerance(double rootMeanSquare);
     double getErrorTolerance() const { return _errorTolerance; }
     /// Seconds that a frame may take while the view moves: the period is lengthened little by
     /// little until it does, and is what was asked for again in the first frame in which the view
     /// rests (a viewer that draws on demand has to draw that one). 0 (default): always what was
     /// asked for.
-    Status setTargetFrameTime(double seconds);
+    ReportedStatus setTargetFrameTime(double seconds);
     double getTargetFrameTime() const { return _targetFrameTime; }
 
     /// Thickness, in object units, of the layer that the table's opacity is stated for; 0 (default)
     /// takes the voxels' mean spacing. Else from 1e-18 to 1e18, which floats can still square.
-    Status setOpacityUnit(double objectUnits);
+    ReportedStatus setOpacityUnit(double objectUnits);
     double getOpacityUnit() const { return _opacityUnit; }
     /// The unit in force.
     double getEffectiveOpacityUnit() const;
 
+    /// What a volume is drawn with in place of what was asked for, where that cannot be had, or was
+    /// left to the library.
+    struct Settings
+    {
+        Technique technique = SLABS;
+        Interpolation interpolation = LINEAR;
+        Lookup lookup = AFTER_INTERPOLATION;
+        RayFunction rayFunction = COMPOSITE;
+        bool shading = false;
+        /// A sentence for each that differs from what was asked for.
+        std::vector<std::string> reasons;
+    };
+    /// Of `geometry`, which is to lie below. May read voxels, as a frame would. Volumes that are
+    /// merged with others one by one, slice after slice, are still those of these settings.
+    Settings getSettingsInForce(const VolumeGeometry& geometry) const;
+
     void resizeGLObjectBuffers(unsigned int maximum) override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
-
-    /// Textures of the lookup table; the renderer's.
-    render::TableTextures& tableTextures() const { return *_tableTextures; }
-    /// What an error tolerance and a frame time come to; the renderer's.
-    render::SamplingChoices& samplingChoices() const { return *_samplingChoices; }
-    render::FrameTimes& frameTimes() const { return *_frameTimes; }
 
 protected:
     ~VolumeAppearance() override;
 
 private:
+    friend struct RenderDataAccess;
+
     osg::ref_ptr<Voxels> _voxels;
     osg::ref_ptr<LookupTable> _lookupTable;
     Technique _technique = AUTOMATIC;
@@ -238,9 +251,7 @@ private:
     core::SamplingParameters _sampling;
     double _errorTolerance = 0.0, _targetFrameTime = 0.0;
     double _opacityUnit = 0.0;
-    std::unique_ptr<render::TableTextures> _tableTextures;
-    std::unique_ptr<render::SamplingChoices> _samplingChoices;
-    std::unique_ptr<render::FrameTimes> _frameTimes;
+    mutable RenderDataSlot _renderData; // textures of the table, sampling that was chosen
 };
 
 } // namespace osgVolumizer

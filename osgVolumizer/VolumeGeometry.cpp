@@ -1,10 +1,10 @@
 #include "VolumeGeometry.h"
 
-#include "Error.h"
 #include "Voxels.h"
-#include "render/cull/Cull.h"
-#include "render/cull/Flattening.h"
-#include "render/volume/GeometryCache.h"
+#include "core/NumberRule.h"
+#include "core/Text.h"
+#include "private/Flattening.h"
+#include "private/Renderer.h"
 
 #include <osgUtil/CullVisitor>
 
@@ -22,7 +22,6 @@ struct VolumeGeometry::Private
     TetraSetPtr tetraSet = std::make_shared<const core::TetraSet>();
     std::atomic<unsigned> modifiedCount{0};
     std::atomic<double> slackAngle{0.0};
-    render::GeometryCache cache;
 };
 
 namespace {
@@ -131,13 +130,12 @@ osg::ref_ptr<VolumeGeometry> VolumeGeometry::createBox(const osg::BoundingBoxd& 
     return geometry;
 }
 
-Status VolumeGeometry::setTetraSet(core::TetraSet tetraSet)
+ReportedStatus VolumeGeometry::setTetraSet(core::TetraSet tetraSet)
 {
     Status status = tetraSet.validate();
     if (!status) {
         status.text = "VolumeGeometry \"" + getName() + "\": " + status.text;
-        reportError(status);
-        return status;
+        return reported(std::move(status));
     }
     auto shared = std::make_shared<const core::TetraSet>(std::move(tetraSet));
     {
@@ -146,7 +144,7 @@ Status VolumeGeometry::setTetraSet(core::TetraSet tetraSet)
     }
     ++_private->modifiedCount;
     dirtyBound();
-    return status;
+    return {};
 }
 
 VolumeGeometry::TetraSetPtr VolumeGeometry::getTetraSet() const
@@ -162,11 +160,13 @@ unsigned VolumeGeometry::getModifiedCount() const
 
 void VolumeGeometry::accept(osg::NodeVisitor& visitor)
 {
-    if (!visitor.validNodeMask(*this) || render::keepsTransforms(*this, visitor)) return;
+    if (!visitor.validNodeMask(*this) || keepsTransforms(*this, visitor)) return;
     visitor.pushOntoNodePath(this);
-    if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
-        render::cull(*this, *cullVisitor);
-    else
+    osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
+    Renderer* renderer = getRenderer();
+    if (cullVisitor && renderer)
+        renderer->cull(*this, *cullVisitor);
+    else if (!cullVisitor)
         visitor.apply(static_cast<osg::Drawable&>(*this));
     visitor.popFromNodePath();
 }
@@ -207,11 +207,13 @@ osg::BoundingSphere VolumeGeometry::computeBound() const
 
 void VolumeGeometry::drawImplementation(osg::RenderInfo&) const {}
 
-Status VolumeGeometry::setSlackAngle(double radians)
+ReportedStatus VolumeGeometry::setSlackAngle(double radians)
 {
-    if (!(radians >= 0.0) || !std::isfinite(radians))
-        return {ErrorCode::VALUE_INVALID,
-                "VolumeGeometry: the slack angle is " + std::to_string(radians) + "."};
+    if (!core::NOT_NEGATIVE.holds(radians))
+        return reported({ErrorCode::VALUE_INVALID, "VolumeGeometry \"" + getName() +
+                                                       "\": slack angle is " +
+                                                       core::formatNumber(radians) + ", expected " +
+                                                       core::NOT_NEGATIVE.expected});
     _private->slackAngle = radians;
     return {};
 }
@@ -221,9 +223,16 @@ double VolumeGeometry::getSlackAngle() const
     return _private->slackAngle;
 }
 
-render::GeometryCache& VolumeGeometry::geometryCache() const
+void VolumeGeometry::resizeGLObjectBuffers(unsigned int maximum)
 {
-    return _private->cache;
+    osg::Drawable::resizeGLObjectBuffers(maximum);
+    _renderData.resizeGLObjectBuffers(maximum);
+}
+
+void VolumeGeometry::releaseGLObjects(osg::State* state) const
+{
+    osg::Drawable::releaseGLObjects(state);
+    _renderData.releaseGLObjects(state);
 }
 
 } // namespace osgVolumizer

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Error.h"
+#include "RenderData.h"
 #include "core/Export.h"
 #include "core/geometry/TetraSet.h"
 
@@ -10,9 +12,6 @@
 namespace osgVolumizer {
 
 class Voxels;
-namespace render {
-class GeometryCache;
-}
 
 /// The region of space that is filled: tetrahedra, in the object frame. It is drawn with the
 /// nearest VolumeAppearance above it; transforms may stand between the two. Without explicit voxel
@@ -23,14 +22,15 @@ class GeometryCache;
 class OSGVOLUMIZER_EXPORT VolumeGeometry : public osg::Drawable
 {
 public:
-    META_Object(osgVolumizer, VolumeGeometry)
+    META_Object(osgVolumizer, VolumeGeometry);
 
-        /// How a box is cut into tetrahedra.
-        enum BoxTessellation {
-            FIVE,
-            TWENTY_FOUR,
-            ENCLOSING
-        };
+    /// How a box is cut into tetrahedra.
+    enum BoxTessellation
+    {
+        FIVE,
+        TWENTY_FOUR,
+        ENCLOSING
+    };
 
     VolumeGeometry();
     /// Copies hold the same immutable tetrahedra until either is given others.
@@ -45,7 +45,7 @@ public:
 
     using TetraSetPtr = std::shared_ptr<const core::TetraSet>;
     /// Takes the tetrahedra; refused (see core::TetraSet::validate) leaves the old ones in place.
-    Status setTetraSet(core::TetraSet tetraSet);
+    ReportedStatus setTetraSet(core::TetraSet tetraSet);
     /// Never null. Immutable: a frame under way keeps the one it has.
     TetraSetPtr getTetraSet() const;
     /// Grows with every setTetraSet(). Thread safe.
@@ -55,7 +55,7 @@ public:
     /// in radians; 0 (default): only while nothing has changed. Saves polygonizing large meshes in
     /// every frame of a slow turn. Has no effect where translucent things are merged with the
     /// volume, and on slabs. Negative or not finite: VALUE_INVALID, and the old one stays.
-    Status setSlackAngle(double radians);
+    ReportedStatus setSlackAngle(double radians);
     double getSlackAngle() const;
 
     /// A cull registers the volume; osgUtil::Optimizer takes no transform from above it.
@@ -65,15 +65,17 @@ public:
     /// Draws nothing: volumes are drawn from per-view leaves, made in accept().
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
 
-    /// What frames reuse; the renderer's.
-    render::GeometryCache& geometryCache() const;
+    void resizeGLObjectBuffers(unsigned int maximum) override;
+    void releaseGLObjects(osg::State* state = nullptr) const override;
 
 protected:
     ~VolumeGeometry() override;
 
 private:
+    friend struct RenderDataAccess;
     struct Private;
     std::unique_ptr<Private> _private;
+    mutable RenderDataSlot _renderData; // what frames reuse
 };
 
 } // namespace osgVolumizer

@@ -67,30 +67,32 @@ MemoryVoxelSource::MemoryVoxelSource(const MemoryVoxelSource& o, const osg::Copy
     _data.reset();
     const Status status = allocate(o._description, o._description.sizeInBytes());
     if (status.ok()) std::memcpy(_data.get(), o._data.get(), o.sizeInBytes());
-    reportError(status);
 }
 
-Status MemoryVoxelSource::allocate(const Description& description, std::int64_t maximumBytes)
+ReportedStatus MemoryVoxelSource::allocate(const Description& description,
+                                           std::int64_t maximumBytes)
 {
-    if (Status status = description.validate(); !status.ok()) return status;
+    if (Status status = description.validate(); !status.ok()) return reported(std::move(status));
     const std::int64_t bytes = description.sizeInBytes();
     const std::string what = "a volume of " + core::formatTriple(description.size) +
                              " voxels needs " + std::to_string(bytes) + " bytes, more than ";
     if (bytes > maximumBytes)
-        return {ErrorCode::TOO_LARGE, what + "the bound of " + std::to_string(maximumBytes)};
+        return reported(
+            {ErrorCode::TOO_LARGE, what + "the bound of " + std::to_string(maximumBytes)});
     // calloc leaves zeroed pages to the system until they are touched.
     std::shared_ptr<void> data(std::calloc(static_cast<std::size_t>(bytes), 1), std::free);
-    if (!data) return {ErrorCode::TOO_LARGE, what + "there is memory"};
+    if (!data) return reported({ErrorCode::TOO_LARGE, what + "there is memory"});
     _data = std::move(data);
     _description = description;
     return {};
 }
 
-Status MemoryVoxelSource::setExternal(const Description& description, void* data,
-                                      std::function<void()> release)
+ReportedStatus MemoryVoxelSource::setExternal(const Description& description, void* data,
+                                              std::function<void()> release)
 {
-    if (Status status = description.validate(); !status.ok()) return status;
-    if (!data) return {ErrorCode::VALUE_INVALID, "the pointer to external voxels is null"};
+    if (Status status = description.validate(); !status.ok()) return reported(std::move(status));
+    if (!data)
+        return reported({ErrorCode::VALUE_INVALID, "the pointer to external voxels is null"});
     _data = std::shared_ptr<void>(data, [release = std::move(release)](void*) {
         if (release) release();
     });

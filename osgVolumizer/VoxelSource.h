@@ -1,7 +1,6 @@
 #pragma once
 
-#include "core/Export.h"
-#include "core/Status.h"
+#include "Error.h"
 #include "core/geometry/Box.h"
 #include "core/voxels/VoxelType.h"
 
@@ -73,10 +72,10 @@ protected:
 class OSGVOLUMIZER_EXPORT MemoryVoxelSource : public VoxelSource
 {
 public:
-    META_Object(osgVolumizer, MemoryVoxelSource)
+    META_Object(osgVolumizer, MemoryVoxelSource);
 
-        /// Bound on what allocate() takes: 2^36 bytes.
-        static constexpr std::int64_t DEFAULT_MAXIMUM_BYTES = std::int64_t(1) << 36;
+    /// Bound on what allocate() takes: 2^36 bytes.
+    static constexpr std::int64_t DEFAULT_MAXIMUM_BYTES = std::int64_t(1) << 36;
 
     MemoryVoxelSource() = default;
     /// Shares the voxels; a copy of its own with CopyOp::DEEP_COPY_OBJECTS. Where there is no
@@ -86,13 +85,13 @@ public:
 
     /// Allocates zeroed voxels. Refuses a description that is not valid, and more than
     /// `maximumBytes` or than there is memory (TOO_LARGE); the old voxels then stay.
-    Status allocate(const Description& description,
-                    std::int64_t maximumBytes = DEFAULT_MAXIMUM_BYTES);
+    ReportedStatus allocate(const Description& description,
+                            std::int64_t maximumBytes = DEFAULT_MAXIMUM_BYTES);
     /// Uses `data` (x fastest, tightly packed) as it is; `release` is called when neither the
     /// source nor a block of it is in use any more. The application may change the values between
     /// frames; it then tells Voxels::dirty().
-    Status setExternal(const Description& description, void* data,
-                       std::function<void()> release = {});
+    ReportedStatus setExternal(const Description& description, void* data,
+                               std::function<void()> release = {});
 
     /// Null until there are voxels.
     void* data() { return _data.get(); }

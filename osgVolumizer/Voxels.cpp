@@ -28,10 +28,16 @@ bool holds(const core::NumberRule& rule, const osg::Vec3d& v)
     return rule.holds(v.x()) && rule.holds(v.y()) && rule.holds(v.z());
 }
 
-Status refusal(const char* what, const osg::Vec3d& v, const core::NumberRule& rule)
+ReportedStatus refuse(const char* what, const osg::Vec3d& v, const core::NumberRule& rule)
 {
-    return {ErrorCode::VALUE_INVALID, what + core::formatTriple(glm::dvec3(v.x(), v.y(), v.z())) +
-                                          ", expected each to be " + rule.expected};
+    return reported(
+        {ErrorCode::VALUE_INVALID, what + core::formatTriple(glm::dvec3(v.x(), v.y(), v.z())) +
+                                       ", expected each to be " + rule.expected});
+}
+
+osg::Vec3i toOsg(const glm::ivec3& v)
+{
+    return {v.x, v.y, v.z};
 }
 
 unsigned nextLayoutCount()
@@ -52,7 +58,7 @@ Voxels::Voxels() : _layoutCount(nextLayoutCount()) {}
 
 Voxels::Voxels(VoxelSource* source) : Voxels()
 {
-    reportError(setSource(source));
+    setSource(source);
 }
 
 Voxels::Voxels(const Voxels& o, const osg::CopyOp& op)
@@ -70,17 +76,18 @@ Voxels::Voxels(const Voxels& o, const osg::CopyOp& op)
 
 Voxels::~Voxels() = default;
 
-Status Voxels::setSource(VoxelSource* source)
+ReportedStatus Voxels::setSource(VoxelSource* source)
 {
     osg::ref_ptr<VoxelSource> keep(source);
     VoxelSource::Description description;
     core::BrickLayout layout;
     if (source) {
         description = source->describe();
-        if (Status status = description.validate(); !status.ok()) return status;
+        if (Status status = description.validate(); !status.ok())
+            return reported(std::move(status));
         Result<core::BrickLayout> made =
             core::BrickLayout::create(description.size, _brickSize, _overlap);
-        if (!made.ok()) return made.status;
+        if (!made.ok()) return reported(made.status);
         layout = *made;
     }
     _source = keep;
@@ -104,9 +111,19 @@ bool Voxels::valid() const
     return _source.valid();
 }
 
-Status Voxels::setSpacing(const osg::Vec3d& spacing)
+osg::Vec3i Voxels::getSize() const
 {
-    if (!holds(core::LENGTH, spacing)) return refusal("voxel spacing is ", spacing, core::LENGTH);
+    return toOsg(_description.size);
+}
+
+osg::Vec3i Voxels::getBrickSize() const
+{
+    return toOsg(_brickSize);
+}
+
+ReportedStatus Voxels::setSpacing(const osg::Vec3d& spacing)
+{
+    if (!holds(core::LENGTH, spacing)) return refuse("voxel spacing is ", spacing, core::LENGTH);
     _description.spacing = glm::dvec3(spacing.x(), spacing.y(), spacing.z());
     _layoutCount = nextLayoutCount();
     return {};
@@ -117,9 +134,9 @@ osg::Vec3d Voxels::getSpacing() const
     return {_description.spacing.x, _description.spacing.y, _description.spacing.z};
 }
 
-Status Voxels::setOrigin(const osg::Vec3d& origin)
+ReportedStatus Voxels::setOrigin(const osg::Vec3d& origin)
 {
-    if (!holds(core::POSITION, origin)) return refusal("volume origin is ", origin, core::POSITION);
+    if (!holds(core::POSITION, origin)) return refuse("volume origin is ", origin, core::POSITION);
     _description.origin = glm::dvec3(origin.x(), origin.y(), origin.z());
     _layoutCount = nextLayoutCount();
     return {};
@@ -135,13 +152,13 @@ double Voxels::getMeanSpacing() const
     return (_description.spacing.x + _description.spacing.y + _description.spacing.z) / 3.0;
 }
 
-Status Voxels::setRange(const osg::Vec2d& range)
+ReportedStatus Voxels::setRange(const osg::Vec2d& range)
 {
     if (!core::RANGE_WIDTH.holds(range.y() - range.x()))
-        return {ErrorCode::VALUE_INVALID, "value range is " + core::formatNumber(range.x()) + "," +
-                                              core::formatNumber(range.y()) +
-                                              ", expected it to rise, over " +
-                                              core::RANGE_WIDTH.expected};
+        return reported({ErrorCode::VALUE_INVALID,
+                         "value range is " + core::formatNumber(range.x()) + "," +
+                             core::formatNumber(range.y()) + ", expected it to rise, over " +
+                             core::RANGE_WIDTH.expected});
     std::lock_guard<std::mutex> lock(_rangeMutex);
     _range = range;
     _rangeKnown = _explicitRange = true;
@@ -192,23 +209,23 @@ void Voxels::findRange() const
     _rangeKnown = true;
 }
 
-Status Voxels::setBrickSize(const glm::ivec3& samples)
+ReportedStatus Voxels::setBrickSize(const osg::Vec3i& samples)
 {
-    return rebuildLayout(samples, _overlap);
+    return rebuildLayout({samples.x(), samples.y(), samples.z()}, _overlap);
 }
 
-Status Voxels::setOverlap(int samples)
+ReportedStatus Voxels::setOverlap(int samples)
 {
     return rebuildLayout(_brickSize, samples);
 }
 
-Status Voxels::rebuildLayout(const glm::ivec3& brickSize, int overlap)
+ReportedStatus Voxels::rebuildLayout(const glm::ivec3& brickSize, int overlap)
 {
     // Without voxels, a volume of one sample stands in, so that the numbers are checked just the
     // same.
     const glm::ivec3 size = valid() ? _description.size : glm::ivec3(1);
     const Result<core::BrickLayout> layout = core::BrickLayout::create(size, brickSize, overlap);
-    if (!layout.ok()) return layout.status;
+    if (!layout.ok()) return reported(layout.status);
     _brickSize = brickSize;
     _overlap = overlap;
     if (valid()) _layout = *layout;
@@ -339,13 +356,12 @@ std::pair<double, double> Voxels::getBrickRange(std::int64_t index) const
 
 void Voxels::resizeGLObjectBuffers(unsigned int maximum)
 {
-    if (const osg::ref_ptr<RenderData> data = _renderData.get())
-        data->resizeGLObjectBuffers(maximum);
+    _renderData.resizeGLObjectBuffers(maximum);
 }
 
 void Voxels::releaseGLObjects(osg::State* state) const
 {
-    if (const osg::ref_ptr<RenderData> data = _renderData.get()) data->releaseGLObjects(state);
+    _renderData.releaseGLObjects(state);
 }
 
 } // namespace osgVolumizer

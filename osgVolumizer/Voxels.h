@@ -7,6 +7,7 @@
 
 #include <osg/Vec2d>
 #include <osg/Vec3d>
+#include <osg/Vec3i>
 
 #include <atomic>
 #include <functional>
@@ -26,29 +27,29 @@ namespace osgVolumizer {
 class OSGVOLUMIZER_EXPORT Voxels : public osg::Object
 {
 public:
-    META_Object(osgVolumizer, Voxels)
+    META_Object(osgVolumizer, Voxels);
 
-        Voxels();
+    Voxels();
     explicit Voxels(VoxelSource* source);
     /// Shares the source with `o`; a copy of its own with CopyOp::DEEP_COPY_OBJECTS. Bricks that
     /// are resident, and textures, are never shared.
     Voxels(const Voxels& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
     /// Replaces the source, and takes size, type, spacing, origin and range from it.
-    Status setSource(VoxelSource* source);
+    ReportedStatus setSource(VoxelSource* source);
     VoxelSource* getSource() const { return _source.get(); }
     /// False until a source with voxels is set: such voxels draw nothing.
     bool valid() const;
 
-    glm::ivec3 getSize() const { return _description.size; }
+    osg::Vec3i getSize() const;
     VoxelType getType() const { return _description.type; }
     int getComponents() const { return _description.components; }
 
     /// Object units between samples, each from 1e-18 to 1e18, which floats can still square.
-    Status setSpacing(const osg::Vec3d& spacing);
+    ReportedStatus setSpacing(const osg::Vec3d& spacing);
     osg::Vec3d getSpacing() const;
     /// Object position of sample (0,0,0), each within 1e18.
-    Status setOrigin(const osg::Vec3d& origin);
+    ReportedStatus setOrigin(const osg::Vec3d& origin);
     osg::Vec3d getOrigin() const;
     /// Mean of the three spacings: the default opacity unit.
     double getMeanSpacing() const;
@@ -57,7 +58,7 @@ public:
     /// can still divide by. Default: the type's
     /// range for 8 bit and RGBA, else the lowest and highest value found in the data, once, on the
     /// first call of getRange(); that reads all bricks where the source does not know it.
-    Status setRange(const osg::Vec2d& range);
+    ReportedStatus setRange(const osg::Vec2d& range);
     osg::Vec2d getRange() const;
     bool hasExplicitRange() const;
 
@@ -65,10 +66,10 @@ public:
     /// setOverlap() and setSource()) where core::BrickLayout is: too many bricks, or too many
     /// samples held twice. Drops resident bricks. To be called, as every setter here, between
     /// frames.
-    Status setBrickSize(const glm::ivec3& samples);
-    glm::ivec3 getBrickSize() const { return _brickSize; }
+    ReportedStatus setBrickSize(const osg::Vec3i& samples);
+    osg::Vec3i getBrickSize() const;
     /// Samples shared by neighbours: 1 for linear filtering, 3 for cubic.
-    Status setOverlap(int samples);
+    ReportedStatus setOverlap(int samples);
     int getOverlap() const { return _overlap; }
     const core::BrickLayout& getLayout() const { return _layout; }
 
@@ -110,8 +111,6 @@ public:
     /// Bytes of the bricks that are kept, but for those that share the source's memory.
     std::size_t getCachedBytes() const { return _cache.bytes(); }
 
-    /// The renderer's: textures per context.
-    RenderDataSlot& renderData() const { return _renderData; }
     void resizeGLObjectBuffers(unsigned int maximum) override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
 
@@ -119,10 +118,11 @@ protected:
     ~Voxels() override;
 
 private:
+    friend struct RenderDataAccess;
     struct Brick; // range and modified count of one brick
     using BrickPtr = std::shared_ptr<Brick>;
 
-    Status rebuildLayout(const glm::ivec3& brickSize, int overlap);
+    ReportedStatus rebuildLayout(const glm::ivec3& brickSize, int overlap);
     void forgetBricks();
     BrickPtr findBrick(std::int64_t brick) const;
     Block readBrick(const core::Box3i& samples, bool& shared, Status& status) const;
@@ -147,7 +147,7 @@ private:
     unsigned _lastModified = 0;
 
     mutable BlockCache _cache{CACHE_BYTES};
-    mutable RenderDataSlot _renderData;
+    mutable RenderDataSlot _renderData; // textures per context
     mutable std::atomic<std::uint64_t> _readCount{0};
     std::atomic<unsigned> _layoutCount;
 };

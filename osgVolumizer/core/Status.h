@@ -31,7 +31,7 @@ inline const char* errorName(ErrorCode code)
 
 /// The outcome of a call that can be refused. `text` is one sentence that names file, field and
 /// value; `index` is the offending element, or -1.
-struct Status
+struct [[nodiscard]] Status
 {
     ErrorCode code = ErrorCode::NONE;
     std::string text;
@@ -48,7 +48,7 @@ struct Status
 
 /// A value, or the reason why there is none. `value` is default-constructed on failure.
 template <class T>
-struct Result
+struct [[nodiscard]] Result
 {
     T value{};
     Status status;

@@ -1,9 +1,6 @@
-#include "Codec.h"
-#include "Report.h"
+#include "RecordProperty.h"
 
 #include <osgVolumizer/LookupTable.h>
-
-#include <osgDB/ObjectWrapper>
 
 namespace osgVolumizer {
 namespace serializers {
@@ -22,7 +19,7 @@ Status readFile(const Record& record, const osgDB::Options* options, LookupTable
     return table.setPoints((*read)->getFunction()->points(), (*read)->getDomain());
 }
 
-Status apply(Record& record, const osgDB::Options* options, LookupTable& table)
+Status applyFunction(Record& record, const osgDB::Options* options, LookupTable& table)
 {
     if (record.has("FileName")) return readFile(record, options, table);
     int domain = 0;
@@ -41,35 +38,17 @@ Status apply(Record& record, const osgDB::Options* options, LookupTable& table)
     return table.setPoints(std::move(points), static_cast<LookupTable::Domain>(domain));
 }
 
-bool checkFunction(const LookupTable&)
+void fillFunction(const LookupTable& table, Record& record)
 {
-    return true;
-}
-
-bool readFunction(osgDB::InputStream& is, LookupTable& table)
-{
-    Record record;
-    Status status = readRecord(is, record);
-    if (status.ok()) status = apply(record, is.getOptions(), table);
-    reportReadError(is, table, status);
-    return true;
-}
-
-bool writeFunction(osgDB::OutputStream& os, const LookupTable& table)
-{
-    Record record;
-    record.add("Version", Field::Integers{Record::version});
-    if (!table.getFileName().empty())
+    if (!table.getFileName().empty()) {
         record.add("FileName", table.getFileName());
-    else {
-        Field::Doubles values;
-        for (const core::TransferFunction::Point& p : table.getFunction()->points())
-            values.insert(values.end(), {p.value, p.color.r, p.color.g, p.color.b, p.color.a});
-        record.add("Domain", std::string(domainNames[table.getDomain()]));
-        record.add("Points", std::move(values), 5);
+        return;
     }
-    writeRecord(os, record);
-    return true;
+    Field::Doubles values;
+    for (const core::TransferFunction::Point& p : table.getFunction()->points())
+        values.insert(values.end(), {p.value, p.color.r, p.color.g, p.color.b, p.color.a});
+    record.add("Domain", std::string(domainNames[table.getDomain()]));
+    record.add("Points", std::move(values), 5);
 }
 
 } // namespace
@@ -81,5 +60,5 @@ using namespace osgVolumizer::serializers;
 REGISTER_OBJECT_WRAPPER(osgVolumizer_LookupTable, new osgVolumizer::LookupTable,
                         osgVolumizer::LookupTable, "osg::Object osgVolumizer::LookupTable")
 {
-    ADD_USER_SERIALIZER(Function);
+    addRecordProperty<MyClass, &applyFunction, &fillFunction>(*wrapper, "Function");
 }

@@ -1,9 +1,6 @@
-#include "Codec.h"
-#include "Report.h"
+#include "RecordProperty.h"
 
 #include <osgVolumizer/VoxelSource.h>
-
-#include <osgDB/ObjectWrapper>
 
 #include <cstring>
 
@@ -42,7 +39,7 @@ Status readDescription(const Record& record, VoxelSource::Description& d)
     return d.validate();
 }
 
-Status apply(Record& record, MemoryVoxelSource& source)
+Status applyData(Record& record, const osgDB::Options*, MemoryVoxelSource& source)
 {
     VoxelSource::Description description;
     Status status = readDescription(record, description);
@@ -63,37 +60,24 @@ Status apply(Record& record, MemoryVoxelSource& source)
     return source.setExternal(description, data->data(), [data] {});
 }
 
-bool checkData(const MemoryVoxelSource& source)
+bool hasData(const MemoryVoxelSource& source)
 {
     return source.data() != nullptr;
 }
 
-bool readData(osgDB::InputStream& is, MemoryVoxelSource& source)
-{
-    Record record;
-    Status status = readRecord(is, record);
-    if (status.ok()) status = apply(record, source);
-    reportReadError(is, source, status);
-    return true;
-}
-
-bool writeData(osgDB::OutputStream& os, const MemoryVoxelSource& source)
+void fillData(const MemoryVoxelSource& source, Record& record)
 {
     const VoxelSource::Description d = source.describe();
     Bytes bytes;
     bytes.elementSize = unsigned(voxelTypeSize(d.type));
     bytes.data.resize(source.sizeInBytes());
     std::memcpy(bytes.data.data(), source.data(), bytes.data.size());
-    Record record;
-    record.add("Version", Field::Integers{Record::version});
     record.add("Size", Field::Integers{d.size.x, d.size.y, d.size.z});
     record.add("Components", Field::Integers{d.components});
     record.add("Type", std::string(voxelTypeName(d.type)));
     record.add("Spacing", Field::Doubles{d.spacing.x, d.spacing.y, d.spacing.z});
     record.add("Origin", Field::Doubles{d.origin.x, d.origin.y, d.origin.z});
     record.add("Voxels", std::move(bytes));
-    writeRecord(os, record);
-    return true;
 }
 
 } // namespace
@@ -106,5 +90,5 @@ REGISTER_OBJECT_WRAPPER(osgVolumizer_MemoryVoxelSource, new osgVolumizer::Memory
                         osgVolumizer::MemoryVoxelSource,
                         "osg::Object osgVolumizer::MemoryVoxelSource")
 {
-    ADD_USER_SERIALIZER(Data);
+    addRecordProperty<MyClass, &applyData, &fillData, &hasData>(*wrapper, "Data");
 }

@@ -41,10 +41,13 @@ constexpr std::size_t kindCount = std::variant_size_v<Field::Value>;
 class Record
 {
 public:
-    /// The version of our format that is written, and the newest that can be read. Independent of
-    /// OSG's.
-    /// 2: VolumeAppearance has Lookup and ExactFiltering.
-    /// 3: VolumeAppearance has ray functions, shading, and what its accuracy and time are to be.
+    /// The version of our format that every record is written with, and the newest that is read;
+    /// records of an older one keep the defaults of what they lack. It is a field of the record,
+    /// and so independent of the versions that OSG's wrappers count for a whole file. 2:
+    /// VolumeAppearance has Lookup and ExactFiltering. 3: VolumeAppearance has RayFunction,
+    /// IsoValue, Shading, Material, Gradients,
+    ///    AccumulationBits, ErrorTolerance and TargetFrameTime.
+    /// 4: VolumeAppearance has CombineRule, VolumeGeometry SlackAngle.
     static constexpr int version = 4;
 
     const std::vector<Field>& fields() const { return _fields; }

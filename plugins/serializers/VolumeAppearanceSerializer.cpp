@@ -1,12 +1,9 @@
-#include "Codec.h"
 #include "Objects.h"
-#include "Report.h"
+#include "RecordProperty.h"
 
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/core/NumberRule.h>
 #include <osgVolumizer/core/Text.h>
-
-#include <osgDB/ObjectWrapper>
 
 #include <functional>
 #include <limits>
@@ -136,7 +133,7 @@ Property accumulationBits()
 {
     return {"AccumulationBits",
             [](const VolumeAppearance& a) { return Field::Integers{a.getAccumulationBits()}; },
-            [](const Record& record, VolumeAppearance& a) {
+            [](const Record& record, VolumeAppearance& a) -> Status {
                 Field::Integers bits;
                 const Status status = record.get("AccumulationBits", 1, bits);
                 if (!status.ok()) return status;
@@ -186,36 +183,24 @@ const std::vector<Property>& properties()
     return list;
 }
 
-bool checkSampling(const VolumeAppearance&)
-{
-    return true;
-}
-
 // Each field by itself: one that is damaged keeps its default, and the first one is reported.
-bool readSampling(osgDB::InputStream& is, VolumeAppearance& appearance)
+Status applySampling(Record& record, const osgDB::Options*, VolumeAppearance& appearance)
 {
-    Record record;
-    Status status = readRecord(is, record);
     int version = Record::version;
-    if (status.ok()) status = record.getInteger("Version", 1, Record::version, version);
-    if (status.ok())
-        for (const Property& property : properties()) {
-            if (property.since > version) continue;
-            const Status set = property.set(record, appearance);
-            if (status.ok()) status = set;
-        }
-    reportReadError(is, appearance, status);
-    return true;
+    Status status = record.getInteger("Version", 1, Record::version, version);
+    if (!status.ok()) return status;
+    for (const Property& property : properties()) {
+        if (property.since > version) continue;
+        const Status set = property.set(record, appearance);
+        if (status.ok()) status = set;
+    }
+    return status;
 }
 
-bool writeSampling(osgDB::OutputStream& os, const VolumeAppearance& appearance)
+void fillSampling(const VolumeAppearance& appearance, Record& record)
 {
-    Record record;
-    record.add("Version", Field::Integers{Record::version});
     for (const Property& property : properties())
         record.add(property.name, property.get(appearance));
-    writeRecord(os, record);
-    return true;
 }
 
 bool checkVoxels(const VolumeAppearance& appearance)
@@ -262,7 +247,7 @@ REGISTER_OBJECT_WRAPPER(osgVolumizer_VolumeAppearance, new osgVolumizer::VolumeA
                         osgVolumizer::VolumeAppearance,
                         "osg::Object osg::Node osg::Group osgVolumizer::VolumeAppearance")
 {
-    ADD_USER_SERIALIZER(Sampling);
+    addRecordProperty<MyClass, &applySampling, &fillSampling>(*wrapper, "Sampling");
     ADD_USER_SERIALIZER(Voxels);
     ADD_USER_SERIALIZER(LookupTable);
 }

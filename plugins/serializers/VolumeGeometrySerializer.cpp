@@ -1,9 +1,6 @@
-#include "Codec.h"
-#include "Report.h"
+#include "RecordProperty.h"
 
 #include <osgVolumizer/VolumeGeometry.h>
-
-#include <osgDB/ObjectWrapper>
 
 namespace osgVolumizer {
 namespace serializers {
@@ -34,7 +31,7 @@ Status readFormat(const Record& record, core::VertexFormat& format)
     return Status();
 }
 
-Status apply(Record& record, VolumeGeometry& geometry)
+Status applyTetraSet(Record& record, const osgDB::Options*, VolumeGeometry& geometry)
 {
     core::VertexFormat format;
     Status status = readFormat(record, format);
@@ -56,26 +53,10 @@ Status apply(Record& record, VolumeGeometry& geometry)
     return status.ok() ? geometry.setTetraSet(std::move(set)) : status;
 }
 
-bool checkTetraSet(const VolumeGeometry&)
-{
-    return true;
-}
-
-bool readTetraSet(osgDB::InputStream& is, VolumeGeometry& geometry)
-{
-    Record record;
-    Status status = readRecord(is, record);
-    if (status.ok()) status = apply(record, geometry);
-    reportReadError(is, geometry, status);
-    return true;
-}
-
-bool writeTetraSet(osgDB::OutputStream& os, const VolumeGeometry& geometry)
+void fillTetraSet(const VolumeGeometry& geometry, Record& record)
 {
     const VolumeGeometry::TetraSetPtr set = geometry.getTetraSet();
     const core::VertexFormat& format = set->vertices.format();
-    Record record;
-    record.add("Version", Field::Integers{Record::version});
     record.add("Layout", std::string(layoutNames[static_cast<int>(format.layout)]));
     if (format.layout == core::VertexLayout::USER)
         record.add("Sizes",
@@ -84,8 +65,6 @@ bool writeTetraSet(osgDB::OutputStream& os, const VolumeGeometry& geometry)
     record.add("Tetrahedra", Field::Indices(set->indices), 4);
     if (geometry.getSlackAngle() != 0.0)
         record.add("SlackAngle", Field::Doubles{geometry.getSlackAngle()});
-    writeRecord(os, record);
-    return true;
 }
 
 } // namespace
@@ -98,5 +77,5 @@ REGISTER_OBJECT_WRAPPER(osgVolumizer_VolumeGeometry, new osgVolumizer::VolumeGeo
                         osgVolumizer::VolumeGeometry,
                         "osg::Object osg::Node osg::Drawable osgVolumizer::VolumeGeometry")
 {
-    ADD_USER_SERIALIZER(TetraSet);
+    addRecordProperty<MyClass, &applyTetraSet, &fillTetraSet>(*wrapper, "TetraSet");
 }

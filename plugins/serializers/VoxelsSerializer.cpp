@@ -1,12 +1,10 @@
-#include "Codec.h"
 #include "Objects.h"
-#include "Report.h"
+#include "RecordProperty.h"
 
 #include <osgVolumizer/Error.h>
 #include <osgVolumizer/ReadVoxels.h>
 #include <osgVolumizer/Voxels.h>
 
-#include <osgDB/ObjectWrapper>
 #include <osgDB/Registry>
 
 namespace osgVolumizer {
@@ -22,6 +20,7 @@ bool checkSource(const Voxels& voxels)
 bool readSource(osgDB::InputStream& is, Voxels& voxels)
 {
     const osg::ref_ptr<VoxelSource> source = readObject<VoxelSource>(is);
+    const CallerReports withName;
     // A source without voxels was damaged, and that is reported already.
     if (source && source->describe().size.x > 0)
         reportReadError(is, voxels, voxels.setSource(source.get()));
@@ -39,9 +38,8 @@ osg::ref_ptr<MemoryVoxelSource> inMemory(const VoxelSource& source)
 {
     osg::ref_ptr<MemoryVoxelSource> copy = new MemoryVoxelSource;
     const VoxelSource::Description description = source.describe();
-    Status status = copy->allocate(description);
-    if (status.ok()) status = source.read({glm::ivec3(0), description.size}, copy->data());
-    if (!status.ok()) reportError(status);
+    if (copy->allocate(description).ok())
+        reportError(source.read({glm::ivec3(0), description.size}, copy->data()));
     return copy;
 }
 
@@ -91,8 +89,7 @@ Status readBrickSizes(const Record& record, Voxels& voxels)
     if (status.ok()) status = record.getInteger("Overlap", 0, 1024, overlap);
     // The bricks that there are may be too small for the new overlap, or the new ones for the old.
     if (status.ok() && overlap < voxels.getOverlap()) status = voxels.setOverlap(overlap);
-    if (status.ok())
-        status = voxels.setBrickSize(glm::ivec3(int(size[0]), int(size[1]), int(size[2])));
+    if (status.ok()) status = voxels.setBrickSize({int(size[0]), int(size[1]), int(size[2])});
     return status.ok() ? voxels.setOverlap(overlap) : status;
 }
 
@@ -119,7 +116,7 @@ Status readRange(const Record& record, Voxels& voxels)
 }
 
 // Each field by itself, as of an appearance; without the file there is nothing to apply them to.
-Status apply(const Record& record, const osgDB::Options* options, Voxels& voxels)
+Status applyBricks(Record& record, const osgDB::Options* options, Voxels& voxels)
 {
     Status status;
     if (record.has("FileName")) status = readFile(record, options, voxels);
@@ -131,38 +128,20 @@ Status apply(const Record& record, const osgDB::Options* options, Voxels& voxels
     return status;
 }
 
-bool checkBricks(const Voxels&)
+void fillBricks(const Voxels& voxels, Record& record)
 {
-    return true;
-}
-
-bool readBricks(osgDB::InputStream& is, Voxels& voxels)
-{
-    Record record;
-    Status status = readRecord(is, record);
-    if (status.ok()) status = apply(record, is.getOptions(), voxels);
-    reportReadError(is, voxels, status);
-    return true;
-}
-
-bool writeBricks(osgDB::OutputStream& os, const Voxels& voxels)
-{
-    const glm::ivec3 size = voxels.getBrickSize();
+    const osg::Vec3i size = voxels.getBrickSize();
     const osg::Vec3d spacing = voxels.getSpacing(), origin = voxels.getOrigin();
-    Record record;
-    record.add("Version", Field::Integers{Record::version});
     if (!voxels.getFileName().empty()) {
         record.add("FileName", voxels.getFileName());
         record.add("FileOptions", voxels.getFileOptions());
     }
-    record.add("BrickSize", Field::Integers{size.x, size.y, size.z});
+    record.add("BrickSize", Field::Integers{size.x(), size.y(), size.z()});
     record.add("Overlap", Field::Integers{voxels.getOverlap()});
     record.add("Spacing", Field::Doubles{spacing.x(), spacing.y(), spacing.z()});
     record.add("Origin", Field::Doubles{origin.x(), origin.y(), origin.z()});
     if (voxels.hasExplicitRange())
         record.add("Range", Field::Doubles{voxels.getRange().x(), voxels.getRange().y()});
-    writeRecord(os, record);
-    return true;
 }
 
 } // namespace
@@ -175,5 +154,5 @@ REGISTER_OBJECT_WRAPPER(osgVolumizer_Voxels, new osgVolumizer::Voxels, osgVolumi
                         "osg::Object osgVolumizer::Voxels")
 {
     ADD_USER_SERIALIZER(Source);
-    ADD_USER_SERIALIZER(Bricks);
+    addRecordProperty<MyClass, &applyBricks, &fillBricks>(*wrapper, "Bricks");
 }

@@ -84,6 +84,7 @@ Status fillWithScalars(const GridGeometry& geometry, VolumeAppearance& appearanc
 
 Result<osg::ref_ptr<osg::Node>> read(const std::string& path, const osgDB::Options* options)
 {
+    const CallerReports withFile;
     const auto inFile = [&path](Status status) {
         status.text = "File '" + path + "': " + status.text + ".";
         return status;

@@ -2,7 +2,7 @@
 // processor lacks one of them, the next best stands in.
 
 #include "TestGeometry.h"
-#include "osgVolumizer/core/sampling/SliceScan.h"
+#include "osgVolumizer/core/sampling/private/SliceScan.h"
 
 #include <gtest/gtest.h>
 

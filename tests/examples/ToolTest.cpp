@@ -59,7 +59,7 @@ private:
 std::vector<double> values(const Voxels& voxels)
 {
     const Voxels::Block block = voxels.getBrick(0);
-    const core::VoxelView view{block.data, voxels.getType(), 1, voxels.getSize()};
+    const core::VoxelView view{block.data, voxels.getType(), 1, voxels.getLayout().size()};
     std::vector<double> v;
     for (std::int64_t i = 0; i < core::sampleCount(view.size); ++i)
         v.push_back(core::voxelValue(view, i));
@@ -74,7 +74,7 @@ TEST_F(Tool, MakesCubes)
     EXPECT_TRUE(says("cubes.tif: 12,8,10 voxels of uint8")) << output;
     const auto voxels = readVoxels(path("cubes.tif"));
     ASSERT_TRUE(voxels.ok()) << voxels.status.text;
-    ASSERT_EQ(glm::ivec3(12, 8, 10), (*voxels)->getSize());
+    ASSERT_EQ(osg::Vec3i(12, 8, 10), (*voxels)->getSize());
     // 1 in the middle of a cube, falling linearly with the largest distance along an axis to 0 at
     // its surface.
     const std::vector<double> v = values(**voxels);
@@ -114,7 +114,7 @@ TEST_F(Tool, RawToVolume)
     ASSERT_EQ(0, run("raw2volume engine.raw.4,3,2,uint16,6,big engine.tif --quiet")) << output;
     const auto voxels = readVoxels(path("engine.tif"));
     ASSERT_TRUE(voxels.ok()) << voxels.status.text;
-    EXPECT_EQ(glm::ivec3(4, 3, 2), (*voxels)->getSize());
+    EXPECT_EQ(osg::Vec3i(4, 3, 2), (*voxels)->getSize());
     for (std::size_t i = 0; i < 24; ++i)
         EXPECT_EQ(256.0 * static_cast<double>(i) + 1.0, values(**voxels)[i]);
 }
@@ -189,5 +189,5 @@ TEST_F(Tool, WritingOverAFileReplacesItWhole)
     ASSERT_EQ(0, run("mkcubes 4 4 2 2 a.tif"));
     const auto voxels = readVoxels(path("a.tif"));
     ASSERT_TRUE(voxels.ok());
-    EXPECT_EQ(glm::ivec3(4, 4, 2), (*voxels)->getSize());
+    EXPECT_EQ(osg::Vec3i(4, 4, 2), (*voxels)->getSize());
 }

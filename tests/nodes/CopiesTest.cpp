@@ -20,7 +20,7 @@ osg::ref_ptr<Voxels> makeVoxels()
     EXPECT_TRUE(source->allocate(description));
     static_cast<unsigned char*>(source->data())[5] = 99;
     osg::ref_ptr<Voxels> voxels = new Voxels(source);
-    EXPECT_TRUE(voxels->setBrickSize(glm::ivec3(3)));
+    EXPECT_TRUE(voxels->setBrickSize({3, 3, 3}));
     EXPECT_TRUE(voxels->setRange({2.0, 7.0}));
     EXPECT_TRUE(voxels->setSpacing({1.0, 2.0, 3.0}));
     return voxels;
@@ -70,10 +70,10 @@ TEST(Copies, DeepOnesOfAnAppearanceShareNothing)
     EXPECT_EQ(copy->getVoxels()->getLayout().brickCount(), 8);
     ASSERT_TRUE(copy->getVoxels()->setSpacing({9.0, 9.0, 9.0}));
     ASSERT_TRUE(copy->getVoxels()->setRange({0.0, 1.0}));
-    ASSERT_TRUE(copy->getVoxels()->setBrickSize(glm::ivec3(64)));
+    ASSERT_TRUE(copy->getVoxels()->setBrickSize({64, 64, 64}));
     EXPECT_EQ(original->getVoxels()->getSpacing(), osg::Vec3d(1.0, 2.0, 3.0));
     EXPECT_EQ(original->getVoxels()->getRange(), osg::Vec2d(2.0, 7.0));
-    EXPECT_EQ(original->getVoxels()->getBrickSize(), glm::ivec3(3));
+    EXPECT_EQ(original->getVoxels()->getBrickSize(), osg::Vec3i(3, 3, 3));
 }
 
 TEST(Copies, DeepOnesOfAGeometryAreChangedAlone)

@@ -106,7 +106,8 @@ protected:
         EXPECT_STREQ(voxelTypeName(type), voxelTypeName((*voxels)->getType()));
         std::vector<double> v;
         const Voxels::Block block = (*voxels)->getBrick(0);
-        const core::VoxelView view{block.data, (*voxels)->getType(), 1, (*voxels)->getSize()};
+        const core::VoxelView view{block.data, (*voxels)->getType(), 1,
+                                   (*voxels)->getLayout().size()};
         for (std::int64_t i = 0; i < core::sampleCount(view.size); ++i)
             v.push_back(core::voxelValue(view, i));
         return v;
@@ -191,7 +192,7 @@ TEST_F(ReadDicom, FramesAreSlices)
     file.thickness = "2.5";
     const auto voxels = readVoxels(write("a.dcm", file.bytes()));
     ASSERT_TRUE(voxels.ok()) << voxels.status.text;
-    EXPECT_EQ(glm::ivec3(2, 3, 2), (*voxels)->getSize());
+    EXPECT_EQ(osg::Vec3i(2, 3, 2), (*voxels)->getSize());
     EXPECT_EQ(osg::Vec3d(0.5, 0.8, 2.5), (*voxels)->getSpacing());
     EXPECT_EQ(scaled(values, 1, 0), read(path("a.dcm"), VoxelType::INT16));
 }

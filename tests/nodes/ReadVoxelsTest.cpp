@@ -104,7 +104,7 @@ TEST_F(ReadVoxels, PagesAreSlices)
     });
     ASSERT_TRUE(voxels.ok()) << voxels.status.text;
     EXPECT_EQ(1.0, done);
-    EXPECT_EQ(glm::ivec3(4, 3, 5), (*voxels)->getSize());
+    EXPECT_EQ(osg::Vec3i(4, 3, 5), (*voxels)->getSize());
     EXPECT_EQ(VoxelType::UINT16, (*voxels)->getType());
     std::vector<std::uint16_t> expected(60);
     std::iota(expected.begin(), expected.end(), std::uint16_t(500));
@@ -169,7 +169,7 @@ TEST_F(ReadVoxels, ImagesWithDepth)
                              "b.null?RES=20x17x9&TILE=8x8x4&TYPE=uint8&PIXEL=1"}) {
         const auto voxels = readVoxels(writeBytes(name, "something"));
         ASSERT_TRUE(voxels.ok()) << voxels.status.text;
-        EXPECT_EQ(glm::ivec3(20, 17, 9), (*voxels)->getSize());
+        EXPECT_EQ(osg::Vec3i(20, 17, 9), (*voxels)->getSize());
         EXPECT_EQ(std::vector<std::uint8_t>(20 * 17 * 9, 255), values<std::uint8_t>(**voxels));
     }
     const Status huge = statusOf(writeBytes("c.null?RES=16384x8192x8192&TYPE=uint8", "x"));
@@ -191,7 +191,7 @@ TEST_F(ReadVoxels, FoldersInNaturalOrder)
     writeBytes(".hidden.png", "neither");
     const auto voxels = readVoxels(path("") /* ends with a slash */);
     ASSERT_TRUE(voxels.ok()) << voxels.status.text;
-    EXPECT_EQ(glm::ivec3(2, 1, 3), (*voxels)->getSize());
+    EXPECT_EQ(osg::Vec3i(2, 1, 3), (*voxels)->getSize());
     EXPECT_EQ((std::vector<std::uint8_t>{10, 11, 20, 21, 100, 101}),
               values<std::uint8_t>(**voxels));
 }
@@ -224,7 +224,7 @@ TEST_F(ReadVoxels, NumberedPatterns)
     options->getDatabasePathList().push_back(path(""));
     const auto found = readVoxels("s###.png", options.get());
     ASSERT_TRUE(found.ok()) << found.status.text;
-    EXPECT_EQ(2, (*found)->getSize().z);
+    EXPECT_EQ(2, (*found)->getSize().z());
     EXPECT_EQ("s###.png", (*found)->getFileName());
 }
 
@@ -412,7 +412,7 @@ TEST_F(ReadVoxels, TruncatedImages)
             // What is left may be a shorter file that is whole in itself; else it is refused by
             // name.
             if (voxels.ok()) {
-                EXPECT_LT((*voxels)->getSize().z, 8);
+                EXPECT_LT((*voxels)->getSize().z(), 8);
                 continue;
             }
             EXPECT_EQ(ErrorCode::FILE_UNREADABLE, voxels.status.code);
@@ -507,7 +507,7 @@ TEST(ReadVoxelsData, TheShippedHead)
 {
     const auto voxels = readVoxels(OSGVOLUMIZER_SOURCE_DIR "/data/head.tif");
     ASSERT_TRUE(voxels.ok()) << voxels.status.text;
-    EXPECT_EQ(glm::ivec3(128, 128, 84), (*voxels)->getSize());
+    EXPECT_EQ(osg::Vec3i(128, 128, 84), (*voxels)->getSize());
     EXPECT_EQ(VoxelType::UINT8, (*voxels)->getType());
     const std::vector<std::uint8_t> v = values<std::uint8_t>(**voxels);
     EXPECT_EQ(19284185u, std::accumulate(v.begin(), v.end(), 0u));

@@ -1,6 +1,6 @@
 #include <osgVolumizer/Error.h>
 #include <osgVolumizer/VolumeAppearance.h>
-#include <osgVolumizer/render/textures/TableTextures.h>
+#include <osgVolumizer/render/cull/AppearanceData.h>
 
 #include <osg/observer_ptr>
 
@@ -113,7 +113,8 @@ TEST(VolumeAppearance, CopiesShareVoxelsAndTable)
     EXPECT_EQ(copy->getMaximumSamples(), 77);
     EXPECT_EQ(copy->getOpacityUnit(), 3.0);
     EXPECT_EQ(copy->getNumChildren(), 1u);
-    EXPECT_NE(&copy->tableTextures(), &appearance->tableTextures());
+    EXPECT_NE(render::renderData<render::AppearanceData>(*copy),
+              render::renderData<render::AppearanceData>(*appearance));
 }
 
 TEST(VolumeAppearance, OneTableHasOneTextureWhoeverHasIt)
@@ -123,8 +124,8 @@ TEST(VolumeAppearance, OneTableHasOneTextureWhoeverHasIt)
     const osg::ref_ptr<LookupTable> table = a->getLookupTable();
     const osg::Vec2d range(0.0, 1.0);
     const auto textureOf = [&](VolumeAppearance& appearance, const osg::Vec2d& of) {
-        return appearance.tableTextures()
-            .get(*table, of, VolumeAppearance::AFTER_INTERPOLATION)
+        return render::renderData<render::AppearanceData>(appearance)
+            ->tables.get(*table, of, VolumeAppearance::AFTER_INTERPOLATION)
             .texture;
     };
     const osg::observer_ptr<osg::TextureBuffer> first = textureOf(*a, range).get();

@@ -1,5 +1,6 @@
 #include <osgVolumizer/Error.h>
 #include <osgVolumizer/Voxels.h>
+#include <osgVolumizer/render/context/RenderDataAccess.h>
 
 #include <gtest/gtest.h>
 
@@ -281,7 +282,7 @@ TEST(Voxels, RefusalsLeaveEverythingAsItWas)
     EXPECT_EQ(ErrorCode::VALUE_INVALID, voxels->setOverlap(-1).code);
     EXPECT_EQ(layout, voxels->getLayoutCount());
     EXPECT_EQ(osg::Vec3d(1, 1, 1), voxels->getSpacing());
-    EXPECT_EQ(glm::ivec3(256), voxels->getBrickSize());
+    EXPECT_EQ(osg::Vec3i(256, 256, 256), voxels->getBrickSize());
     EXPECT_FALSE(voxels->getBrick(1));
     EXPECT_FALSE(voxels->getBrick(-1));
 }
@@ -293,7 +294,7 @@ TEST(Voxels, WithoutASourceTheyAreEmpty)
     EXPECT_EQ(0, voxels->getLayout().brickCount());
     EXPECT_FALSE(voxels->getBrick(0));
     EXPECT_EQ(osg::Vec2d(0, 1), voxels->getRange());
-    ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(32)).ok());
+    ASSERT_TRUE(voxels->setBrickSize({32, 32, 32}).ok());
     ASSERT_TRUE(voxels->setSource(memorySource({40, 40, 40}).get()).ok());
     EXPECT_EQ(8, voxels->getLayout().brickCount());
     ASSERT_TRUE(voxels->setSource(nullptr).ok());
@@ -304,7 +305,7 @@ TEST(Voxels, ManyBricksCostNothingUntilTheyAreAskedFor)
 {
     osg::ref_ptr<FormulaSource> source = new FormulaSource({2000, 2000, 2000});
     osg::ref_ptr<Voxels> voxels = new Voxels(source.get());
-    ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(33)).ok());
+    ASSERT_TRUE(voxels->setBrickSize({33, 33, 33}).ok());
     EXPECT_EQ(std::int64_t(63) * 63 * 63, voxels->getLayout().brickCount());
     EXPECT_TRUE(voxels->getBrick(voxels->getLayout().brickCount() - 1));
     EXPECT_EQ(1, source->reads);
@@ -333,14 +334,14 @@ TEST(Voxels, RenderDataIsMadeOnceAndForwardedTo)
     };
     osg::ref_ptr<Voxels> voxels = new Voxels;
     voxels->releaseGLObjects(); // none yet
-    EXPECT_FALSE(voxels->renderData().get().valid());
+    EXPECT_FALSE(RenderDataAccess::slot(*voxels).get().valid());
     int made = 0;
     const auto make = [&] {
         ++made;
         return osg::ref_ptr<RenderData>(new Data);
     };
-    const auto data = voxels->renderData().getOrCreate(make);
-    EXPECT_EQ(data, voxels->renderData().getOrCreate(make));
+    const auto data = RenderDataAccess::slot(*voxels).getOrCreate(make);
+    EXPECT_EQ(data, RenderDataAccess::slot(*voxels).getOrCreate(make));
     EXPECT_EQ(1, made);
     voxels->resizeGLObjectBuffers(7);
     voxels->releaseGLObjects();

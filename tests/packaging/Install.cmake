@@ -9,6 +9,8 @@ endif()
 # Every public header, in the folder that it has in the sources.
 file(GLOB headers RELATIVE ${SOURCE} ${SOURCE}/osgVolumizer/*.h)
 file(GLOB_RECURSE core_headers RELATIVE ${SOURCE} ${SOURCE}/osgVolumizer/core/*.h)
+# Headers in folders named private/ stay behind.
+list(FILTER core_headers EXCLUDE REGEX "/private/")
 list(TRANSFORM headers PREPEND include/)
 list(TRANSFORM core_headers PREPEND include/)
 set(expected ${headers} ${core_headers}
@@ -19,6 +21,14 @@ set(expected ${headers} ${core_headers}
 foreach(file ${expected})
   if(NOT EXISTS ${PREFIX}/${file})
     message(SEND_ERROR "Not installed: ${file}")
+  endif()
+endforeach()
+
+foreach(folder private render io)
+  file(GLOB_RECURSE found RELATIVE ${PREFIX} ${PREFIX}/include/*.h)
+  list(FILTER found INCLUDE REGEX "/${folder}/")
+  if(found)
+    message(SEND_ERROR "Installed, but not public: ${found}")
   endif()
 endforeach()
 

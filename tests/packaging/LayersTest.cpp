@@ -50,10 +50,10 @@ std::vector<fs::path> codeBelow(const fs::path& folder)
     return files;
 }
 
-/// The sources of the nodes: those directly in the library's folder.
+/// The sources of the nodes: those directly in the library's folder, and their private ones.
 std::vector<fs::path> nodeFiles()
 {
-    std::vector<fs::path> files;
+    std::vector<fs::path> files = codeBelow(library / "private");
     for (const auto& entry : fs::directory_iterator(library))
         if (isCode(entry.path())) files.push_back(entry.path());
     return files;
@@ -158,13 +158,31 @@ TEST(Layers, CoreIncludesOnlyItself)
 TEST(Layers, PublicHeadersIncludeOnlyPublicHeaders)
 {
     auto headers = nodeFiles();
+    for (const fs::path& file : codeBelow(library / "core"))
+        headers.push_back(file);
     headers.erase(std::remove_if(headers.begin(), headers.end(),
-                                 [](const fs::path& f) { return f.extension() != ".h"; }),
+                                 [](const fs::path& f) {
+                                     return f.extension() != ".h" ||
+                                            f.parent_path().filename() == "private";
+                                 }),
                   headers.end());
-    ASSERT_GE(headers.size(), 6u);
+    ASSERT_GE(headers.size(), 40u);
     for (const Include& include : includesOf(headers)) {
         const std::string layer = layerOf(include);
         EXPECT_TRUE(layer == "nodes" || layer == "core" || !include.quoted)
+            << include.file << " includes " << include.target;
+        EXPECT_EQ(include.target.find("private/"), std::string::npos)
+            << include.file << " includes " << include.target;
+    }
+}
+
+TEST(Layers, NodesDoNotIncludeRendering)
+{
+    const auto files = nodeFiles();
+    ASSERT_GE(files.size(), 20u);
+    for (const Include& include : includesOf(files)) {
+        const std::string layer = layerOf(include);
+        EXPECT_TRUE(layer != "render" && layer != "interact")
             << include.file << " includes " << include.target;
     }
 }

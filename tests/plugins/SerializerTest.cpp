@@ -341,7 +341,7 @@ TEST_P(SerializerTest, VoxelsByFileAreFoundBesideTheScene)
     const auto b = roundTrip(*a);
     ASSERT_TRUE(b && b->getVoxels());
     EXPECT_TRUE(errors().empty()) << errors();
-    EXPECT_EQ(b->getVoxels()->getSize(), glm::ivec3(2, 3, 4));
+    EXPECT_EQ(b->getVoxels()->getSize(), osg::Vec3i(2, 3, 4));
     EXPECT_EQ(b->getVoxels()->getFileName(), "a scan.raw.2,3,4,uint8");
     EXPECT_EQ(b->getVoxels()->getFileOptions(), "spacing=1,2,0.5 range=5,200");
     EXPECT_EQ(b->getVoxels()->getSpacing(), osg::Vec3d(1.0, 2.0, 0.5));

@@ -73,7 +73,7 @@ TEST_F(VolumeLoader, AnImageFile)
         load(OSGVOLUMIZER_SOURCE_DIR "/data/head.tif.volume",
              "spacing=1,1,1.5 origin=-64,-64,-63 table=head.lut unit=1.2 range=0,200");
     ASSERT_TRUE(head.valid());
-    EXPECT_EQ(glm::ivec3(128, 128, 84), head->getVoxels()->getSize());
+    EXPECT_EQ(osg::Vec3i(128, 128, 84), head->getVoxels()->getSize());
     EXPECT_EQ(osg::Vec2d(0, 200), head->getVoxels()->getRange());
     EXPECT_EQ(1.2, head->getOpacityUnit());
     EXPECT_EQ("head.tif", head->getName());
@@ -95,7 +95,7 @@ TEST_F(VolumeLoader, AFolderAndAPattern)
     for (const char* name : {"stack", "stack/", "stack/s%03d.png", "stack/s###.png"}) {
         const auto volume = load(path(name) + ".volume");
         ASSERT_TRUE(volume.valid()) << name;
-        EXPECT_EQ(glm::ivec3(4, 3, 3), volume->getVoxels()->getSize());
+        EXPECT_EQ(osg::Vec3i(4, 3, 3), volume->getVoxels()->getSize());
     }
 }
 
@@ -104,7 +104,7 @@ TEST_F(VolumeLoader, ARawFile)
     const std::string file = writeBytes("engine.raw", "HEAD" + std::string(2 * 5 * 4 * 3, 'x'));
     const auto volume = load(file + ".5,4,3,int16,4,big.volume");
     ASSERT_TRUE(volume.valid());
-    EXPECT_EQ(glm::ivec3(5, 4, 3), volume->getVoxels()->getSize());
+    EXPECT_EQ(osg::Vec3i(5, 4, 3), volume->getVoxels()->getSize());
     EXPECT_EQ(VoxelType::INT16, volume->getVoxels()->getType());
     // Every type.
     for (int t = 0; t <= static_cast<int>(VoxelType::FLOAT64); ++t) {

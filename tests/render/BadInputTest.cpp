@@ -171,7 +171,7 @@ TEST_F(BadInput, RefusedSetsLeaveTheOldOne)
 TEST_F(BadInput, ABrickThatFailsIsLeftOut)
 {
     osg::ref_ptr<Voxels> voxels = new Voxels(new FailingSource);
-    ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(7)));
+    ASSERT_TRUE(voxels->setBrickSize({7, 7, 7}));
     osg::ref_ptr<VolumeAppearance> volume = makeVolume(voxels);
     volume->setLookupTable(makeTable(smoothPoints(0.2)));
     RenderOptions options = view();
@@ -184,7 +184,7 @@ TEST_F(BadInput, ABrickThatFailsIsLeftOut)
     EXPECT_GT(support::coveredPixels(image, 0.2f).count(), 500u);
 
     // All bricks fail.
-    ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(13)));
+    ASSERT_TRUE(voxels->setBrickSize({13, 13, 13}));
     expectNothingBeside(volume);
 }
 

@@ -73,7 +73,8 @@ TEST_P(Bricks, OneEightAndSixtyFourShowTheSame)
     for (std::size_t v = 0; v < all.size(); ++v) {
         FloatImage whole;
         for (const int perAxis : {1, 2, 4}) {
-            ASSERT_TRUE(voxels->setBrickSize(glm::ivec3((SIZE - 1) / perAxis + 1)));
+            const int brick = (SIZE - 1) / perAxis + 1;
+            ASSERT_TRUE(voxels->setBrickSize({brick, brick, brick}));
             ASSERT_EQ(voxels->getLayout().brickCount(), perAxis * perAxis * perAxis);
             FloatImage image = support::renderScene(twin.node, all[v]);
             support::savePicture(image, "bricks_" + std::to_string(GetParam()) + "_view" +

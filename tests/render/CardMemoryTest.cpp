@@ -89,7 +89,7 @@ protected:
     {
         osg::ref_ptr<Voxels> voxels = makeVoxels(size, bumps);
         EXPECT_TRUE(voxels->setOverlap(overlap));
-        EXPECT_TRUE(voxels->setBrickSize(glm::ivec3(brick)));
+        EXPECT_TRUE(voxels->setBrickSize({brick, brick, brick}));
         osg::ref_ptr<A> volume = makeVolume(voxels);
         volume->setTechnique(A::SLABS);
         volume->setLookupTable(makeTable(smoothPoints(0.2)));
@@ -338,7 +338,7 @@ osg::ref_ptr<A> makeLarge(int brick, osg::ref_ptr<BytesSource>& source)
 {
     source = new BytesSource(LARGE);
     osg::ref_ptr<Voxels> voxels = new Voxels(source);
-    EXPECT_TRUE(voxels->setBrickSize(glm::ivec3(brick)));
+    EXPECT_TRUE(voxels->setBrickSize({brick, brick, brick}));
     osg::ref_ptr<A> volume = makeVolume(voxels);
     volume->setTechnique(A::SLABS);
     volume->setLookupTable(makeTable(smoothPoints(0.2)));

@@ -82,7 +82,7 @@ protected:
     {
         GLTest::SetUp();
         _voxels = makeVoxels(glm::ivec3(SIZE), bumps);
-        ASSERT_TRUE(_voxels->setBrickSize(glm::ivec3(BRICK)));
+        ASSERT_TRUE(_voxels->setBrickSize({BRICK, BRICK, BRICK}));
         _twin = makeTwin(_voxels, smoothPoints(0.05), GetParam());
     }
 
@@ -153,7 +153,7 @@ TEST_P(Counters, TransparentBricksAreNeitherReadNorUploaded)
     osg::ref_ptr<KnowingSource> source = new KnowingSource;
     osg::ref_ptr<Voxels> voxels = new Voxels(source);
     ASSERT_TRUE(voxels->setRange(osg::Vec2d(0.0, 1.0)));
-    ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(BRICK)));
+    ASSERT_TRUE(voxels->setBrickSize({BRICK, BRICK, BRICK}));
     osg::ref_ptr<VolumeAppearance> volume = makeVolume(voxels);
     volume->setTechnique(GetParam());
     volume->setLookupTable(makeTable(smoothPoints(0.3)));

@@ -37,7 +37,8 @@ protected:
         GLTest::SetUp();
         osg::ref_ptr<Voxels> voxels =
             makeVoxels(glm::ivec3(SIZE), [](const glm::dvec3&) { return 0.5; });
-        ASSERT_TRUE(voxels->setBrickSize(glm::ivec3((SIZE - 1) / GetParam().bricksPerAxis + 1)));
+        const int brick = (SIZE - 1) / GetParam().bricksPerAxis + 1;
+        ASSERT_TRUE(voxels->setBrickSize({brick, brick, brick}));
         _twin = makeTwin(voxels, constantPoints({1.0, 1.0, 1.0, ALPHA}));
         _twin.node->setChild(
             0, VolumeGeometry::createBox(osg::BoundingBoxd(0, 0, 0, SIZE - 1, SIZE - 1, SIZE - 1),

@@ -38,7 +38,7 @@ protected:
     {
         GLTest::SetUp();
         osg::ref_ptr<Voxels> voxels = makeVoxels({25, 21, 17}, bumps);
-        ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(13)));
+        ASSERT_TRUE(voxels->setBrickSize({13, 13, 13}));
         _twin = makeTwin(voxels, smoothPoints(0.1), GetParam());
     }
 

@@ -62,7 +62,7 @@ protected:
     {
         GLTest::SetUp();
         _voxels = makeVoxels({25, 21, 17}, bumps);
-        ASSERT_TRUE(_voxels->setBrickSize(glm::ivec3(13)));
+        ASSERT_TRUE(_voxels->setBrickSize({13, 13, 13}));
         _twin = makeTwin(_voxels, smoothPoints(0.05));
         _extent = _voxels->getLayout().extent();
     }

@@ -31,8 +31,8 @@ RenderOptions view(double size)
 FloatImage expectedPicture(const Voxels& voxels, std::shared_ptr<oracle::Grid> grid,
                            const RenderOptions& options)
 {
-    oracle::Scene scene =
-        oracleScene(oracle::voxelVolume(std::move(grid), voxels.getSize(), oracle::Table(RAMP)));
+    oracle::Scene scene = oracleScene(
+        oracle::voxelVolume(std::move(grid), voxels.getLayout().size(), oracle::Table(RAMP)));
     scene.tolerance = 1e-8;
     return oraclePicture(scene, options);
 }
@@ -151,7 +151,7 @@ TEST_F(Interpolation, BricksShowNoSeams)
         volume->setSamplingPeriod(osg::Vec3d(0.25, 0.25, 0.25));
         const FloatImage one = support::renderScene(volume, options);
         osg::ref_ptr<Voxels> bricks = makeVoxels(glm::ivec3(33), bumps);
-        bricks->setBrickSize(glm::ivec3(17));
+        bricks->setBrickSize({17, 17, 17});
         bricks->setOverlap(volume->getRequiredOverlap());
         volume->setVoxels(bricks);
         for (const bool joined : {true, false}) {
@@ -166,7 +166,7 @@ TEST_F(Interpolation, BricksShowNoSeams)
 TEST_F(Interpolation, CubicWithTooLittleOverlapSaysSoAndIsLinear)
 {
     osg::ref_ptr<Voxels> bricks = makeVoxels(glm::ivec3(33), bumps);
-    bricks->setBrickSize(glm::ivec3(17));
+    bricks->setBrickSize({17, 17, 17});
     osg::ref_ptr<VolumeAppearance> volume = makeVolume(bricks);
     volume->setName("too little");
     const FloatImage linear = support::renderScene(volume, view(33));

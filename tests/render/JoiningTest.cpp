@@ -96,7 +96,7 @@ protected:
         osg::ref_ptr<Voxels> voxels = new Voxels(_source);
         EXPECT_TRUE(voxels->setRange(osg::Vec2d(0.0, 1.0)));
         EXPECT_TRUE(voxels->setOverlap(overlap));
-        EXPECT_TRUE(voxels->setBrickSize(glm::ivec3(BRICK)));
+        EXPECT_TRUE(voxels->setBrickSize({BRICK, BRICK, BRICK}));
         osg::ref_ptr<VolumeAppearance> volume = makeVolume(voxels);
         volume->setTechnique(A::SLABS);
         volume->setLookupTable(makeTable(points));
@@ -154,7 +154,7 @@ TEST_F(Joining, ShowsTheSameInEveryWay)
     for (const Way& way : ways) {
         const bool surface = way.function == A::ISOSURFACE;
         osg::ref_ptr<VolumeAppearance> volume = makeBricks(surface ? bumps : halves, BAND, 5);
-        ASSERT_TRUE(volume->getVoxels()->setBrickSize(glm::ivec3(13)));
+        ASSERT_TRUE(volume->getVoxels()->setBrickSize({13, 13, 13}));
         volume->setInterpolation(way.interpolation);
         volume->setLookup(way.lookup);
         volume->setRayFunction(way.function);
@@ -168,7 +168,7 @@ TEST_F(Joining, ShowsTheSameInEveryWay)
         EXPECT_GT(support::coveredPixels(image, 0.2f).count(), 200u) << name;
         EXPECT_GT(counter(renderer, "bricks drawn"), 8) << name;
         EXPECT_EQ(counter(renderer, "draw calls"), 1) << name;
-        ASSERT_TRUE(volume->getVoxels()->setBrickSize(glm::ivec3(SIZE)));
+        ASSERT_TRUE(volume->getVoxels()->setBrickSize({SIZE, SIZE, SIZE}));
         const support::Difference d = compare(image, support::renderScene(volume, view()));
         EXPECT_LE(d.maximum, 1e-5) << name << " at " << d.worstX << " " << d.worstY;
     }
@@ -181,7 +181,7 @@ TEST_F(Joining, GradientsReachIntoTheNextBrick)
     volume->setShading(true);
     const FloatImage image = support::renderScene(volume, view());
     EXPECT_GT(support::coveredPixels(image, 0.2f).count(), 1000u);
-    ASSERT_TRUE(volume->getVoxels()->setBrickSize(glm::ivec3(SIZE)));
+    ASSERT_TRUE(volume->getVoxels()->setBrickSize({SIZE, SIZE, SIZE}));
     EXPECT_LE(compare(image, support::renderScene(volume, view())).maximum, 1e-5);
 }
 
@@ -305,7 +305,7 @@ TEST_F(Joining, AnUnreadableBrickIsAHole)
     osg::ref_ptr<Failing> source = new Failing;
     osg::ref_ptr<Voxels> voxels = new Voxels(source);
     ASSERT_TRUE(voxels->setRange(osg::Vec2d(0.0, 1.0)));
-    ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(BRICK)));
+    ASSERT_TRUE(voxels->setBrickSize({BRICK, BRICK, BRICK}));
     volume->setVoxels(voxels);
     support::SceneRenderer renderer(volume, view());
     EXPECT_GT(support::coveredPixels(renderer.render(), 0.1f).count(), 500u);

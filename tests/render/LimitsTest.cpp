@@ -63,7 +63,7 @@ osg::ref_ptr<Voxels> typed(const Voxels& voxels, VoxelType type)
     description.type = type;
     osg::ref_ptr<MemoryVoxelSource> source = new MemoryVoxelSource;
     source->allocate(description);
-    const glm::ivec3 size = voxels.getSize();
+    const glm::ivec3 size = voxels.getLayout().size();
     core::convertVoxels(floats->data(), VoxelType::FLOAT32, source->data(), type,
                         std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z), top);
     osg::ref_ptr<Voxels> result = new Voxels(source);
@@ -133,7 +133,7 @@ TEST_F(Limits, BricksLargerThanTexturesAreDrawnCoarser)
     for (const VoxelType type : {VoxelType::FLOAT32, VoxelType::UINT8, VoxelType::HALF}) {
         const auto volume = [&](const std::function<double(const glm::dvec3&)>& value) {
             osg::ref_ptr<Voxels> voxels = typed(*makeVoxels({25, 21, 17}, value), type);
-            EXPECT_TRUE(voxels->setBrickSize(glm::ivec3(32)).ok());
+            EXPECT_TRUE(voxels->setBrickSize({32, 32, 32}).ok());
             osg::ref_ptr<VolumeAppearance> node = makeVolume(voxels);
             node->setLookupTable(makeTable(smoothPoints(0.1)));
             node->setTechnique(VolumeAppearance::SLABS);
@@ -155,7 +155,7 @@ TEST_F(Limits, PaintLargerThanTexturesIsCoarserToo)
 {
     const auto linear = [](const glm::dvec3& p) { return 0.02 * p.x + 0.015 * p.y + 0.01 * p.z; };
     osg::ref_ptr<Voxels> voxels = makeVoxels({23, 21, 17}, linear);
-    ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(32)).ok());
+    ASSERT_TRUE(voxels->setBrickSize({32, 32, 32}).ok());
     osg::ref_ptr<VolumeAppearance> paint = makeVolume(voxels);
     paint->setLookupTable(makeTable(smoothPoints(0.9)));
     paint->setCombineRule(VolumeAppearance::PAINT);

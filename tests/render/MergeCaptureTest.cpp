@@ -81,7 +81,7 @@ TEST_F(MergeCapture, NestedShellsInOneMesh)
 
 TEST_F(MergeCapture, BricksThatShareATexture)
 {
-    ASSERT_TRUE(_voxels->setBrickSize(glm::ivec3(9)));
+    ASSERT_TRUE(_voxels->setBrickSize({9, 9, 9}));
     for (const double radius : {13.0, 6.0})
         _scene.addMesh(sphereMesh(MIDDLE, radius, 64, 32), {0.2, 0.9, 0.3, 0.3});
     expectExact("bricks");

@@ -31,7 +31,7 @@ protected:
     {
         GLTest::SetUp();
         osg::ref_ptr<Voxels> voxels = makeVoxels({25, 25, 25}, bumps);
-        ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(13)));
+        ASSERT_TRUE(voxels->setBrickSize({13, 13, 13}));
         _twin = makeTwin(voxels, smoothPoints(0.05), GetParam());
         _group = new osg::Group;
         _scene = oracleScene(_twin.oracle);

@@ -45,7 +45,7 @@ protected:
     {
         GLTest::SetUp();
         _voxels = makeVoxels({25, 21, 17}, bumps);
-        ASSERT_TRUE(_voxels->setBrickSize(glm::ivec3(13)));
+        ASSERT_TRUE(_voxels->setBrickSize({13, 13, 13}));
         _twin = makeTwin(_voxels, smoothPoints(0.15), GetParam());
     }
 
@@ -79,7 +79,7 @@ protected:
     osg::ref_ptr<Voxels> makeOriginal() const
     {
         osg::ref_ptr<Voxels> voxels = makeVoxels({25, 21, 17}, bumps);
-        voxels->setBrickSize(glm::ivec3(13));
+        voxels->setBrickSize({13, 13, 13});
         return voxels;
     }
 

@@ -108,7 +108,7 @@ TEST_F(RayFunction, DoesNotDependOnBricks)
         twin.setPeriod(0.25);
         const FloatImage one = support::renderScene(twin.node, view());
         osg::ref_ptr<Voxels> bricks = makeVoxels(glm::ivec3(SIZE), bumps);
-        bricks->setBrickSize(glm::ivec3(9));
+        bricks->setBrickSize({9, 9, 9});
         twin.node->setVoxels(bricks);
         for (const bool joined : {true, false}) {
             const FloatImage many =

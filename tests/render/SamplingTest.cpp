@@ -43,7 +43,7 @@ class Sampling : public support::GLTest, public ::testing::WithParamInterface<Fa
 TEST_P(Sampling, AgreesWithTheOracle)
 {
     osg::ref_ptr<Voxels> voxels = makeVoxels({29, 21, 25}, bumps);
-    ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(15)));
+    ASSERT_TRUE(voxels->setBrickSize({15, 15, 15}));
     TwinVolume twin = makeTwin(voxels, smoothPoints(0.04), VolumeAppearance::SLICES);
     twin.node->setSamplingMode(GetParam().mode);
     twin.node->setSamplingSpace(GetParam().space);
@@ -153,7 +153,7 @@ using Interpolation = support::GLTest;
 TEST_F(Interpolation, NearestShowsCubes)
 {
     osg::ref_ptr<Voxels> voxels = makeVoxels({9, 9, 9}, bumps);
-    ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(5)));
+    ASSERT_TRUE(voxels->setBrickSize({5, 5, 5}));
     TwinVolume twin = makeTwin(voxels, smoothPoints(0.3), VolumeAppearance::SLABS);
     twin.node->setInterpolation(VolumeAppearance::NEAREST);
     twin.oracle.field = gridOf(*voxels, oracle::Grid::NEAREST);

@@ -243,7 +243,7 @@ TEST_F(Shading, BricksWithEnoughOverlapShowNoSeams)
         twin.node->setVoxels(whole);
         const FloatImage one = support::renderScene(twin.node, view());
         osg::ref_ptr<Voxels> bricks = makeVoxels(glm::ivec3(SIZE), bumps);
-        bricks->setBrickSize(glm::ivec3(12));
+        bricks->setBrickSize({12, 12, 12});
         bricks->setOverlap(twin.node->getRequiredOverlap());
         twin.node->setVoxels(bricks);
         for (const bool joined : {true, false}) {

@@ -114,7 +114,7 @@ TEST_F(Skipping, ShowsTheSame)
             for (const Way& way : ways()) {
                 osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(SIZE), field);
                 ASSERT_TRUE(voxels->setOverlap(3));
-                ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(brick)));
+                ASSERT_TRUE(voxels->setBrickSize({brick, brick, brick}));
                 osg::ref_ptr<VolumeAppearance> volume = makeVolume(voxels, way);
                 volume->setSamplingPeriod(osg::Vec3d(0.4, 0.4, 0.4));
                 const FloatImage image = support::renderScene(volume, view());
@@ -179,7 +179,7 @@ TEST_F(Skipping, HomogeneousBricksAreOneSegment)
         twin.node->setLookup(lookup);
         const FloatImage expected = oraclePicture(oracleScene(twin.oracle), options);
         for (const int brick : {33, 9}) {
-            ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(brick)));
+            ASSERT_TRUE(voxels->setBrickSize({brick, brick, brick}));
             support::SceneRenderer renderer(twin.node, options);
             EXPECT_LT(support::compare(renderer.render(), expected).rmse, 1e-4);
             const double bricks = brick == 33 ? 1.0 : 64.0;
@@ -191,7 +191,7 @@ TEST_F(Skipping, HomogeneousBricksAreOneSegment)
         auto* source = static_cast<MemoryVoxelSource*>(voxels->getSource());
         static_cast<float*>(source->data())[0] = 0.6f;
         voxels->dirty();
-        ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(33)));
+        ASSERT_TRUE(voxels->setBrickSize({33, 33, 33}));
         EXPECT_GT(countSamples(twin.node, options).maximum, 30.0);
         static_cast<float*>(source->data())[0] = 0.5f;
         voxels->dirty();

@@ -21,7 +21,7 @@ protected:
     {
         GLTest::SetUp();
         osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(17), bumps);
-        ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(9)));
+        ASSERT_TRUE(voxels->setBrickSize({9, 9, 9}));
         _volume = makeVolume(voxels);
         _volume->setTechnique(VolumeAppearance::SLICES);
         _volume->setLookupTable(makeTable(smoothPoints(0.1)));

@@ -29,7 +29,7 @@ RenderOptions view(const osg::Vec3d& eye = osg::Vec3d(40, -20, 30))
 TwinVolume makeScene()
 {
     osg::ref_ptr<Voxels> voxels = makeVoxels({25, 21, 17}, bumps);
-    voxels->setBrickSize(glm::ivec3(13));
+    voxels->setBrickSize({13, 13, 13});
     return makeTwin(voxels, smoothPoints(0.1));
 }
 
@@ -296,7 +296,7 @@ TEST_P(Threading, ChangesWhileFramesAreDrawn)
     support::SceneRenderer renderer(twin.node, options);
     osg::ref_ptr<Voxels> other =
         makeVoxels({25, 21, 17}, [](const glm::dvec3& p) { return 1.0 - bumps(p); });
-    other->setBrickSize(glm::ivec3(13));
+    other->setBrickSize({13, 13, 13});
     const osg::ref_ptr<Voxels> original = twin.node->getVoxels();
     for (int i = 0; i < 12; ++i) {
         ASSERT_TRUE(twin.node->getLookupTable()->setPoints(smoothPoints(0.02 + 0.01 * i),

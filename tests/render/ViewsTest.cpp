@@ -22,7 +22,7 @@ protected:
     {
         GLTest::SetUp();
         osg::ref_ptr<Voxels> voxels = makeVoxels({25, 21, 17}, bumps);
-        ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(13)));
+        ASSERT_TRUE(voxels->setBrickSize({13, 13, 13}));
         _twin = makeTwin(voxels, smoothPoints(0.03), GetParam());
         _twin.setPeriod(0.25);
         _options.size(80, 72).perspective(45.0).lookAt({40, -20, 30}, {12, 10, 8}, {0, 0, 1});

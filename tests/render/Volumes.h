@@ -49,7 +49,7 @@ inline std::shared_ptr<oracle::Grid> gridOf(const Voxels& voxels,
                                             oracle::Grid::Interpolation how = oracle::Grid::LINEAR)
 {
     auto* source = dynamic_cast<MemoryVoxelSource*>(voxels.getSource());
-    const glm::ivec3 size = voxels.getSize();
+    const glm::ivec3 size = voxels.getLayout().size();
     const auto count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
     return std::make_shared<oracle::Grid>(
         size, oracle::toDoubles(source->data(), count, VoxelType::FLOAT32), how);
@@ -95,8 +95,9 @@ inline TwinVolume makeTwin(Voxels* voxels, const Points& points,
     twin.node->setLookupTable(makeTable(points));
     twin.node->setTechnique(technique);
     const osg::Vec3d s = voxels->getSpacing(), o = voxels->getOrigin();
-    twin.oracle = oracle::voxelVolume(gridOf(*voxels), voxels->getSize(), oracle::Table(points),
-                                      {s.x(), s.y(), s.z()}, {o.x(), o.y(), o.z()});
+    twin.oracle =
+        oracle::voxelVolume(gridOf(*voxels), voxels->getLayout().size(), oracle::Table(points),
+                            {s.x(), s.y(), s.z()}, {o.x(), o.y(), o.z()});
     return twin;
 }
 

@@ -48,7 +48,7 @@ osg::ref_ptr<Voxels> voxelsOf(VoxelType type, int components, const void* data, 
     std::memcpy(source->data(), data, bytes);
     osg::ref_ptr<Voxels> voxels = new Voxels(source);
     EXPECT_TRUE(voxels->setRange(osg::Vec2d(0.0, HIGHEST)));
-    EXPECT_TRUE(voxels->setBrickSize(glm::ivec3(9)));
+    EXPECT_TRUE(voxels->setBrickSize({9, 9, 9}));
     return voxels;
 }
 

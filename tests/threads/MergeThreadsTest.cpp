@@ -26,7 +26,7 @@ public:
         _voxels[0] = makeVoxels(glm::ivec3(SIZE), bumps);
         _voxels[1] = makeBlob(glm::ivec3(SIZE), 4.0);
         for (Voxels* voxels : {_voxels[0].get(), _voxels[1].get()})
-            voxels->setBrickSize(glm::ivec3(9)); // eight bricks, in one texture
+            voxels->setBrickSize({9, 9, 9}); // eight bricks, in one texture
         scene.addVolume(_voxels[0], THIN);
         scene.addVolume(_voxels[1], THIN, osg::Matrixd::translate(6, 3, 4));
         _quad = &scene.addQuad({glm::vec3(-3, -2, 1), {19, 0, 3}, {20, 18, 15}, {-2, 15, 12}},

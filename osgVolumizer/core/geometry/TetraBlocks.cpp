@@ -1,6 +1,6 @@
 #include "TetraBlocks.h"
 
-#include "../LargePages.h"
+#include "../private/LargePages.h"
 #include "Orientation.h"
 
 #include <glm/geometric.hpp>

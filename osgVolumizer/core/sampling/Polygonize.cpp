@@ -1,6 +1,6 @@
 #include "Polygonize.h"
 
-#include "PolygonizerPrivate.h"
+#include "private/PolygonizerPrivate.h"
 
 #include <algorithm>
 #include <cmath>

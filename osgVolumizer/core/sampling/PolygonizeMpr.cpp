@@ -1,4 +1,4 @@
-#include "PolygonizerPrivate.h"
+#include "private/PolygonizerPrivate.h"
 
 #include "../geometry/ConvexPieces.h"
 

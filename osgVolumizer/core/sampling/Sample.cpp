@@ -1,9 +1,9 @@
 #include "Sample.h"
 
 #include "../geometry/Orientation.h"
-#include "ClipRecords.h"
-#include "Interpolate.h"
-#include "TetraCases.h"
+#include "private/ClipRecords.h"
+#include "private/Interpolate.h"
+#include "private/TetraCases.h"
 
 #include <glm/geometric.hpp>
 

@@ -38,7 +38,7 @@ core::Box3d unionOf(const std::vector<SelectedBrick>& bricks)
 // format there: see makeVoxelTexture().
 double joinedBytes(const Voxels& voxels, bool gradients)
 {
-    return double(core::sampleCount(voxels.getSize())) *
+    return double(core::sampleCount(voxels.getLayout().size())) *
            double(texelFormat(voxels, gradients).texelBytes());
 }
 
@@ -54,7 +54,7 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, const Brick
     // Filters must find in a brick all that they need, since its neighbours may not be there.
     if (layout.overlap() < (features.cubic ? 3 : 1)) return false;
     const osg::State* state = visitor.getState();
-    const glm::ivec3 size = voxels.getSize();
+    const glm::ivec3 size = voxels.getLayout().size();
     return state && std::max({size.x, size.y, size.z}) <= texture3DSizeOf(*state) &&
            joinedBytes(voxels, features.gradientTexture) <=
                std::min(MAXIMUM_BYTES, double(textures.budget()));
@@ -85,7 +85,7 @@ JoinedPiece pieceOf(const Voxels& voxels, std::int64_t brick, bool gradients)
     JoinedPiece piece = pieceOf(voxels, brick);
     if (!gradients || voxels.getLayout().overlap() < 3) return piece;
     // Gradients of a brick's outermost samples have only one side; the neighbour has both.
-    const glm::ivec3 size = voxels.getSize();
+    const glm::ivec3 size = voxels.getLayout().size();
     for (int axis = 0; axis < 3; ++axis) {
         if (piece.samples.min[axis] > 0) ++piece.samples.min[axis];
         if (piece.samples.max[axis] < size[axis]) --piece.samples.max[axis];
@@ -147,7 +147,7 @@ void joinBricks(VolumeInstance& volume, const Voxels& voxels, const OccupancyQue
         joined->pieces.push_back(pieceOf(voxels, brick.index, gradients));
     joined->voxels = &voxels;
     joined->gradients = gradients;
-    const glm::vec3 size(voxels.getSize());
+    const glm::vec3 size(voxels.getLayout().size());
     all.clipBox = voxels.getLayout().extent();
     all.textureScale = 1.0f / size;
     all.textureOffset = 0.5f / size;

@@ -8,9 +8,9 @@
 #include "../volume/MakeLook.h"
 #include "../volume/SliceCache.h"
 #include "../volume/VolumeInstance.h"
+#include "AppearanceData.h"
 #include "BrickSelection.h"
-#include "FrameTimes.h"
-#include "SamplingChoices.h"
+#include "TableChoice.h"
 
 #include <osg/Timer>
 #include <osgUtil/CullVisitor>
@@ -80,45 +80,21 @@ void registerVolume(std::unique_ptr<VolumeInstance> volume, osgUtil::CullVisitor
     cv.popStateSet();
 }
 
-TableTexture tableOf(const VolumeAppearance& appearance, VolumeAppearance::Lookup lookup)
-{
-    return appearance.tableTextures().get(*appearance.getLookupTable(),
-                                          appearance.getVoxels()->getRange(), lookup);
-}
-
 // The table, and, where an error tolerance or a frame time is asked for, the period.
 TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visitor)
 {
     const VolumeAppearance& appearance = *volume.appearance;
-    const VolumeAppearance::Lookup lookup = usedLookup(appearance, *volume.prepared);
-    TableTexture table;
-    if (!(appearance.getErrorTolerance() > 0.0) ||
-        !canKeepTolerance(appearance, *volume.prepared)) {
-        table = tableOf(appearance, lookup);
-    } else {
-        SamplingQuestion question;
-        question.tolerance = appearance.getErrorTolerance();
-        if (lookup != VolumeAppearance::PREINTEGRATED)
-            question.midpoints = tableOf(appearance, VolumeAppearance::AFTER_INTERPOLATION);
-        if (lookup != VolumeAppearance::AFTER_INTERPOLATION)
-            question.integrals = tableOf(appearance, VolumeAppearance::PREINTEGRATED);
-        question.frameToUnits =
-            glm::dmat3(volume.prepared->frameToObject) / appearance.getEffectiveOpacityUnit();
-        question.box = volume.prepared->regionBox;
-        question.nearest = appearance.getInterpolation() == VolumeAppearance::NEAREST;
-        const core::PeriodChoice choice =
-            appearance.samplingChoices().get(*appearance.getVoxels(), question);
-        volume.sampling.periodVoxel = glm::dvec3(choice.periodVoxel);
-        table = choice.integrals ? question.integrals : question.midpoints;
-    }
+    const TableChoice choice = chooseTable(appearance, *volume.prepared);
+    if (choice.periodVoxel) volume.sampling.periodVoxel = glm::dvec3(*choice.periodVoxel);
     if (appearance.getTargetFrameTime() > 0.0 && visitor.getFrameStamp()) {
         const double now = osg::Timer::instance()->time_s();
         const osg::Matrixd toClip = *volume.frameToEye * *visitor.getProjectionMatrix();
-        volume.sampling.periodVoxel *= appearance.frameTimes().stretch(
-            volume.viewId, visitor.getFrameStamp()->getFrameNumber(), toClip, now,
-            appearance.getTargetFrameTime());
+        volume.sampling.periodVoxel *=
+            renderData<AppearanceData>(appearance)
+                ->frameTimes.stretch(volume.viewId, visitor.getFrameStamp()->getFrameNumber(),
+                                     toClip, now, appearance.getTargetFrameTime());
     }
-    return table;
+    return choice.table;
 }
 
 // All that is known before bricks are selected; null where there is nothing to draw.
@@ -131,7 +107,7 @@ std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
     auto volume = std::make_unique<VolumeInstance>();
     volume->geometry = &geometry;
     volume->appearance = &appearance;
-    volume->prepared = geometry.geometryCache().get(geometry, voxels);
+    volume->prepared = renderData<GeometryCache>(geometry)->get(geometry, voxels);
     if (!volume->prepared) return nullptr;
     if (!voxels && volume->prepared->tetras.vertices.format().colorSize == 0) return nullptr;
     volume->sampling = appearance.getSamplingParameters();

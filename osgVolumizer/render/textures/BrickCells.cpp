@@ -187,7 +187,7 @@ joinCells(const Voxels& voxels,
           const std::map<std::int64_t, std::shared_ptr<const BrickCells>>& parts)
 {
     core::CellGrid grid;
-    const glm::ivec3 samples = voxels.getSize();
+    const glm::ivec3 samples = voxels.getLayout().size();
     grid.cellSize = cellSizeFor(samples);
     grid.count = glm::max((samples - 2) / grid.cellSize + 1, 1);
     std::vector<std::uint8_t> occupied(static_cast<std::size_t>(core::sampleCount(grid.count)), 0);

@@ -1,5 +1,6 @@
 #include "BrickResidency.h"
 
+#include "../context/RenderDataAccess.h"
 #include "Texels.h"
 
 #include "../../core/voxels/VoxelData.h"
@@ -38,9 +39,7 @@ void keepWithin(std::int64_t room, const std::vector<osg::ref_ptr<ResidentTextur
 
 osg::ref_ptr<BrickResidency> BrickResidency::of(const Voxels& voxels)
 {
-    const auto data = voxels.renderData().getOrCreate(
-        []() -> osg::ref_ptr<RenderData> { return new BrickResidency; });
-    return static_cast<BrickResidency*>(data.get());
+    return renderData<BrickResidency>(voxels);
 }
 
 VoxelBlock BrickResidency::load(const Voxels& voxels, std::int64_t brick)
@@ -81,7 +80,7 @@ osg::ref_ptr<BrickTexture> BrickResidency::ask(const Voxels& voxels, const Brick
         if (readable)
             entry.texture = new BrickTexture(texelFormat(voxels, request.gradients),
                                              voxels.getLayout().brick(brick).samples.size(),
-                                             core::sampleCount(voxels.getSize()));
+                                             core::sampleCount(voxels.getLayout().size()));
     }
     return answer(entry);
 }
@@ -92,7 +91,7 @@ osg::ref_ptr<JoinedTexture> BrickResidency::joined(const Voxels& voxels, bool gr
     std::lock_guard<std::mutex> lock(_mutex);
     JoinedEntry& entry = _joined[gradients];
     if (!entry.texture || entry.layoutCount != voxels.getLayoutCount())
-        entry = {new JoinedTexture(texelFormat(voxels, gradients), voxels.getSize()),
+        entry = {new JoinedTexture(texelFormat(voxels, gradients), voxels.getLayout().size()),
                  voxels.getLayoutCount()};
     entry.texture->setUse(frame, std::numeric_limits<float>::max());
     return entry.texture;

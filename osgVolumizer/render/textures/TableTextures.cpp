@@ -1,6 +1,7 @@
 #include "TableTextures.h"
 
 #include "../context/Allocation.h"
+#include "../context/RenderDataAccess.h"
 #include "../context/ReportOnce.h"
 
 #include "../../core/transfer/PreIntegration.h"
@@ -122,9 +123,7 @@ class SharedTables : public RenderData
 public:
     static osg::ref_ptr<SharedTables> of(const LookupTable& table)
     {
-        const auto data = table.renderData().getOrCreate(
-            []() -> osg::ref_ptr<RenderData> { return new SharedTables; });
-        return static_cast<SharedTables*>(data.get());
+        return renderData<SharedTables>(table);
     }
     std::shared_ptr<const TableTexture> get(const LookupTable& table, const TableKey& key)
     {

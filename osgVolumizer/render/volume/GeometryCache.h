@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../../core/RecencyCache.h"
+#include "../context/RenderDataAccess.h"
 #include "PreparedGeometry.h"
 
 #include <memory>
@@ -13,8 +14,9 @@ namespace render {
 
 class SliceCache;
 
-/// Prepared geometries of one VolumeGeometry, by what they were made from. Thread safe.
-class GeometryCache
+/// What is kept with a VolumeGeometry: prepared geometries, by what they were made from, and the
+/// slices of all views. Thread safe.
+class GeometryCache : public RenderData
 {
 public:
     GeometryCache();
@@ -22,6 +24,10 @@ public:
     SliceCache& slices() const { return *_slices; }
     std::shared_ptr<const PreparedGeometry> get(const VolumeGeometry& geometry,
                                                 const Voxels* voxels);
+
+    // All of it is in the memory of the process.
+    void resizeGLObjectBuffers(unsigned int) override {}
+    void releaseGLObjects(osg::State*) const override {}
 
 private:
     struct Key

@@ -1,8 +1,7 @@
 #include "MakeLook.h"
 
 #include "../context/Matrices.h"
-#include "../context/ReportOnce.h"
-#include "../draw/RayFunctions.h"
+#include "SettingsInForce.h"
 
 #include <osgUtil/CullVisitor>
 
@@ -16,84 +15,6 @@ namespace osgVolumizer {
 namespace render {
 
 namespace {
-
-// What cannot be done, and what is done instead.
-void reportUnsupported(const VolumeAppearance& appearance, const std::string& what)
-{
-    reportOnce(
-        {ErrorCode::NOT_SUPPORTED, "VolumeAppearance \"" + appearance.getName() + "\": " + what});
-}
-
-bool overlapSuffices(const Voxels& voxels, int samples)
-{
-    return voxels.getLayout().brickCount() <= 1 || voxels.getOverlap() >= samples;
-}
-
-VolumeAppearance::Interpolation usedInterpolation(const VolumeAppearance& appearance)
-{
-    const Voxels* voxels = appearance.getVoxels();
-    const auto asked = appearance.getInterpolation();
-    if (!voxels || asked != VolumeAppearance::CUBIC || overlapSuffices(*voxels, 3)) return asked;
-    reportUnsupported(appearance,
-                      "cubic interpolation needs bricks that share 3 samples, but the voxels' "
-                      "overlap is " +
-                          std::to_string(voxels->getOverlap()) + "; interpolation is linear");
-    return VolumeAppearance::LINEAR;
-}
-
-bool usesSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
-{
-    return appearance.getTechnique() != VolumeAppearance::SLICES && prepared.region &&
-           prepared.voxelFrame && appearance.getVoxels() &&
-           prepared.tetras.vertices.format().colorSize == 0 &&
-           (appearance.getTechnique() == VolumeAppearance::SLABS ||
-            appearance.getSamplingMode() == SamplingMode::VIEWPORT_ALIGNED);
-}
-
-VolumeAppearance::RayFunction usedRayFunction(const VolumeAppearance& appearance,
-                                              const PreparedGeometry& prepared)
-{
-    const auto asked = appearance.getRayFunction();
-    const Voxels* voxels = appearance.getVoxels();
-    if (!voxels) return VolumeAppearance::COMPOSITE;
-    const RayFunctionRow& row = rowOf(asked);
-    const auto nameOf = [](VolumeAppearance::RayFunction function) {
-        return std::string("ray function ") + VolumeAppearance::RAY_FUNCTION_NAMES[function];
-    };
-    if (row.needsOneComponent && voxels->getComponents() != 1) {
-        reportUnsupported(appearance,
-                          nameOf(asked) + " needs voxels of one component, but these have " +
-                              std::to_string(voxels->getComponents()) + "; they are composited");
-        return VolumeAppearance::COMPOSITE;
-    }
-    if (row.needsSlabs && !usesSlabs(appearance, prepared)) {
-        reportUnsupported(appearance, nameOf(asked) +
-                                          " needs slabs, and so a convex region in one voxel "
-                                          "frame; the volume is composited");
-        return VolumeAppearance::COMPOSITE;
-    }
-    return asked;
-}
-
-bool usesShading(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
-                 VolumeAppearance::RayFunction function)
-{
-    const Voxels* voxels = appearance.getVoxels();
-    if (!appearance.getShading() || !voxels) return false;
-    if (rowOf(function).gathers) return false; // values have no colour yet
-    if (!prepared.voxelFrame) {
-        reportUnsupported(appearance,
-                          "shading needs one affine map to the voxel frame; the deformed "
-                          "volume is not lit");
-        return false;
-    }
-    if (!overlapSuffices(*voxels, appearance.getRequiredOverlap()))
-        reportUnsupported(appearance, "shading without seams needs bricks that share " +
-                                          std::to_string(appearance.getRequiredOverlap()) +
-                                          " samples, but the voxels' overlap is " +
-                                          std::to_string(voxels->getOverlap()));
-    return true;
-}
 
 // Frame units that a pixel's width and height cover where clip w is `w`.
 glm::dmat2x3 pixelEdges(const glm::dmat4& toEye, double w, osgUtil::CullVisitor& visitor)
@@ -176,15 +97,13 @@ glm::dmat3 frameToUnits(const glm::dmat3& frameToObject, double unit)
 
 // How the shader gets a colour out of a brick.
 void setInterpolation(const VolumeAppearance& appearance, const TableTexture& table,
-                      double voxelsPerSample, ProgramFeatures& features)
+                      double voxelsPerSample, ProgramFeatures& features, Reasons& reasons)
 {
-    const auto interpolation = usedInterpolation(appearance);
+    const auto interpolation = usedInterpolation(appearance, reasons);
     features.nearest = interpolation == VolumeAppearance::NEAREST;
     features.cubic = interpolation == VolumeAppearance::CUBIC;
     features.exact = interpolation == VolumeAppearance::LINEAR && appearance.getExactFiltering();
-    // Of nearest samples the two orders give the same.
-    features.before = rowOf(features.rayFunction).integratesLight && !features.nearest &&
-                      appearance.getLookup() == VolumeAppearance::BEFORE_INTERPOLATION;
+    features.before = looksUpBefore(appearance, features.rayFunction, interpolation);
     features.preIntegrated = table.integrals;
     features.shortRuns = table.integrals && table.shortRuns;
     // At a period of a voxel and more what the nearest entry is off by does not count.
@@ -193,7 +112,7 @@ void setInterpolation(const VolumeAppearance& appearance, const TableTexture& ta
 }
 
 void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
-                 ProgramFeatures& features)
+                 ProgramFeatures& features, Reasons& reasons)
 {
     const Voxels* voxels = appearance.getVoxels();
     features.slab = usesSlabs(appearance, prepared);
@@ -202,8 +121,8 @@ void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& pre
     features.voxelCoordinates = !features.slab && voxels && !prepared.voxelFrame;
     features.vertexColors = prepared.tetras.vertices.format().colorSize > 0;
     features.opaqueDepth = features.slab;
-    features.rayFunction = usedRayFunction(appearance, prepared);
-    features.shading = usesShading(appearance, prepared, features.rayFunction);
+    features.rayFunction = usedRayFunction(appearance, prepared, reasons);
+    features.shading = usesShading(appearance, prepared, features.rayFunction, reasons);
     features.gradientTexture = features.shading && !features.rgba &&
                                appearance.getGradients() == VolumeAppearance::PRECOMPUTED;
 }
@@ -223,30 +142,6 @@ void setValues(const VolumeAppearance& appearance, const Voxels& voxels, VolumeL
 
 } // namespace
 
-VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
-                                    const PreparedGeometry& prepared)
-{
-    // Runs of values need scalars that vary, and the ray in the voxel frame, which slices of a
-    // deformed volume do not know.
-    const bool runs = prepared.voxelFrame && appearance.getVoxels()->getComponents() == 1 &&
-                      appearance.getInterpolation() != VolumeAppearance::NEAREST &&
-                      rowOf(usedRayFunction(appearance, prepared)).integratesLight;
-    return runs ? appearance.getLookup() : VolumeAppearance::AFTER_INTERPOLATION;
-}
-
-bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
-{
-    const auto function = usedRayFunction(appearance, prepared);
-    if (usesSlabs(appearance, prepared) && appearance.getVoxels()->getComponents() == 1 &&
-        rowOf(function).integratesLight && !usesShading(appearance, prepared, function) &&
-        appearance.getLookup() != VolumeAppearance::BEFORE_INTERPOLATION)
-        return true;
-    reportUnsupported(appearance,
-                      "an error tolerance needs slabs, composited and not lit, and voxels of one "
-                      "component looked up after interpolation; the sampling period is used");
-    return false;
-}
-
 std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table,
                                            osgUtil::CullVisitor& visitor)
 {
@@ -255,7 +150,8 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     auto look = std::make_shared<VolumeLook>();
     ProgramFeatures& features = look->features;
     look->table = table;
-    setFeatures(appearance, prepared, features);
+    Reasons reasons;
+    setFeatures(appearance, prepared, features, reasons);
     features.spherical = !features.slab && volume.sampling.mode == SamplingMode::SPHERICAL;
     if (appearance.getVoxels()) setValues(appearance, *appearance.getVoxels(), *look);
     look->frameToUnits =
@@ -267,7 +163,9 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     look->maximumSteps = volume.sampling.maximumSamples + 2;
     const glm::dvec3 alongView = glm::inverse(glm::dmat3(toEye)) * glm::dvec3(0.0, 0.0, -1.0);
     look->voxelsPerSample = look->step * glm::length(alongView / volume.sampling.voxelSize);
-    if (features.voxels) setInterpolation(appearance, table, look->voxelsPerSample, features);
+    if (features.voxels)
+        setInterpolation(appearance, table, look->voxelsPerSample, features, reasons);
+    reportReasons(appearance, reasons);
     if (features.slab) {
         look->regionMin = glm::vec3(prepared.regionBox.min);
         look->regionMax = glm::vec3(prepared.regionBox.max);

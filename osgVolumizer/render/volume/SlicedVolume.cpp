@@ -118,9 +118,11 @@ Status SlicedVolume::polygonize(const VolumeInstance& volume, const core::View& 
     // Where other things are merged, surfaces have to lie where this view has them.
     const double slack = viewAligned ? 0.0 : volume.geometry->getSlackAngle();
     const Result<core::FaceCache::FacesPtr> slices =
-        volume.geometry->geometryCache().slices().faces().faces(
-            volume.viewId, {volume.prepared, &volume.prepared->tetras}, clipBoxesOf(volume), view,
-            sampling, slack, &_polygonized);
+        renderData<GeometryCache>(*volume.geometry)
+            ->slices()
+            .faces()
+            .faces(volume.viewId, {volume.prepared, &volume.prepared->tetras}, clipBoxesOf(volume),
+                   view, sampling, slack, &_polygonized);
     if (!slices) return slices.status;
     _slices = *slices;
     // Planes across an older view have the normal of that one.
@@ -157,9 +159,11 @@ std::shared_ptr<const VolumeMesh> SlicedVolume::makeMesh(const VolumeInstance& v
     // deformed volume only the surfaces have.
     const bool brickByBrick = volume.prepared->voxelFrame || _slices->brickCount == 1;
     const std::shared_ptr<const SliceTriangles> triangles =
-        volume.geometry->geometryCache().slices().triangles(
-            volume.viewId, _slices, firstSurface, lastSurface,
-            [&]() { return trianglesOf(*_slices, firstSurface, lastSurface, brickByBrick); });
+        renderData<GeometryCache>(*volume.geometry)
+            ->slices()
+            .triangles(volume.viewId, _slices, firstSurface, lastSurface, [&]() {
+                return trianglesOf(*_slices, firstSurface, lastSurface, brickByBrick);
+            });
     auto mesh = std::make_shared<VolumeMesh>(headOf(triangles->mesh));
     mesh->arrays = {triangles, &triangles->mesh};
     mesh->batches = triangles->mesh.batches;

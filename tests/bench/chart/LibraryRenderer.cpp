@@ -38,7 +38,8 @@ public:
         osg::ref_ptr<Voxels> voxels = new Voxels(source);
         status = voxels->setRange(osg::Vec2d(scene.range.x, scene.range.y));
         if (status.ok() && _options.brickSize)
-            status = voxels->setBrickSize(glm::ivec3(_options.brickSize));
+            status =
+                voxels->setBrickSize({_options.brickSize, _options.brickSize, _options.brickSize});
         if (!status.ok()) return status;
         osg::ref_ptr<LookupTable> table = new LookupTable;
         status = table->setPoints(scene.table, LookupTable::RANGE_FRACTION);

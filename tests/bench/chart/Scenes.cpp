@@ -123,7 +123,7 @@ ChartScene head(const std::string& name, bool shaded)
         std::cerr << name << ": " << (voxels.ok() ? table.status.text : voxels.status.text) << "\n";
         return scene;
     }
-    scene.size = (*voxels)->getSize();
+    scene.size = (*voxels)->getLayout().size();
     scene.type = (*voxels)->getType();
     const VoxelBlock block = (*voxels)->getBrick(0);
     scene.voxels.assign(block.data, block.data + block.bytes);

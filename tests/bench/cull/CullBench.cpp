@@ -99,7 +99,7 @@ int main(int argc, char** argv)
 {
     const int frames = argc > 1 ? std::max(1, std::atoi(argv[1])) : 101;
     const osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(33), bumps);
-    voxels->setBrickSize(glm::ivec3(9));
+    voxels->setBrickSize({9, 9, 9});
     run("outside the view", *voxels, COUNT, {5000, 0, 0}, frames);
     run("smaller than a pixel", *voxels, COUNT, {0, 1e6, 0}, frames);
     run("64 bricks, drawn one by one", *voxels, 1, {-16, -16, -16}, frames);

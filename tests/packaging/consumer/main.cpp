@@ -39,7 +39,7 @@ int main()
     osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile("consumer.osgt");
     auto* back = dynamic_cast<osgVolumizer::VolumeAppearance*>(scene.get());
     if (!back) return fail("The scene was not read back");
-    if (!back->getVoxels() || back->getVoxels()->getSize() != description.size)
+    if (!back->getVoxels() || back->getVoxels()->getLayout().size() != description.size)
         return fail("The voxels were not read back");
     return 0;
 }

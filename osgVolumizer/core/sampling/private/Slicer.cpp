@@ -1,4 +1,4 @@
-#include "../LargePages.h"
+#include "../../private/LargePages.h"
 #include "SliceScan.h"
 
 #include <algorithm>

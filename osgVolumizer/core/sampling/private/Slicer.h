@@ -1,11 +1,11 @@
 #pragma once
 
-#include "../Parallel.h"
-#include "../geometry/BoxIndex.h"
-#include "../geometry/TetraBlocks.h"
+#include "../../Parallel.h"
+#include "../../geometry/BoxIndex.h"
+#include "../../geometry/TetraBlocks.h"
+#include "../Polygonize.h"
+#include "../SurfaceFamily.h"
 #include "ClipRecords.h"
-#include "Polygonize.h"
-#include "SurfaceFamily.h"
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../geometry/Box.h"
+#include "../../geometry/Box.h"
 
 #include <cstddef>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../LargePages.h"
+#include "../../private/LargePages.h"
 #include "Slicer.h"
 #include "TetraCases.h"
 

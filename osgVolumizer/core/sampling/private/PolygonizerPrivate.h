@@ -1,9 +1,9 @@
 #pragma once
 
-#include "Polygonize.h"
-#include "Refine.h"
+#include "../Polygonize.h"
+#include "../Refine.h"
+#include "../SurfaceFamily.h"
 #include "Slicer.h"
-#include "SurfaceFamily.h"
 
 #include <vector>
 

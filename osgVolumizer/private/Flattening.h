@@ -3,7 +3,6 @@
 #include <osg/NodeVisitor>
 
 namespace osgVolumizer {
-namespace render {
 
 /// osgUtil::Optimizer's FLATTEN_STATIC_TRANSFORMS_DUPLICATING_SHARED_SUBGRAPHS (part of its
 /// ALL_OPTIMIZATIONS) replaces every STATIC transform by a group, asks no drawable whether it can
@@ -17,5 +16,4 @@ namespace render {
 /// must not visit the node.
 bool keepsTransforms(osg::Node& node, osg::NodeVisitor& visitor);
 
-} // namespace render
 } // namespace osgVolumizer

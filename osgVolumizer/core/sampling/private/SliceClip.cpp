@@ -1,4 +1,4 @@
-#include "../LargePages.h"
+#include "../../private/LargePages.h"
 #include "Interpolate.h"
 #include "Slicer.h"
 #include "TetraCases.h"

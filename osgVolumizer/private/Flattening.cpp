@@ -4,7 +4,6 @@
 #include <osgUtil/Optimizer>
 
 namespace osgVolumizer {
-namespace render {
 
 namespace {
 
@@ -39,5 +38,4 @@ bool keepsTransforms(osg::Node& node, osg::NodeVisitor& visitor)
     return true;
 }
 
-} // namespace render
 } // namespace osgVolumizer

@@ -1,0 +1,53 @@
+// What the nodes call in the renderer.
+#include "../../private/Renderer.h"
+
+#include "../context/ContextResources.h"
+#include "../context/SharedStateSets.h"
+#include "../volume/GeometryCache.h"
+#include "../volume/SettingsInForce.h"
+#include "Cull.h"
+#include "TableChoice.h"
+
+#include "../../VolumeGeometry.h"
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+class VolumeRenderer : public Renderer
+{
+public:
+    void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor) override
+    {
+        render::cull(geometry, visitor);
+    }
+    void resizeGLObjectBuffers(unsigned int maximum) override { resizeSharedStateSets(maximum); }
+    void releaseGLObjects(osg::State* state) override { releaseContextResources(state); }
+    VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
+                                               const VolumeGeometry& geometry) override
+    {
+        const Voxels* voxels = appearance.getVoxels();
+        const bool drawn = !voxels || voxels->valid();
+        const auto prepared =
+            drawn ? renderData<GeometryCache>(geometry)->get(geometry, voxels) : nullptr;
+        if (!prepared) {
+            VolumeAppearance::Settings settings;
+            settings.reasons.emplace_back("the volume is empty; nothing is drawn");
+            return settings;
+        }
+        const bool integrals = voxels && chooseTable(appearance, *prepared).table.integrals;
+        return render::settingsInForce(appearance, *prepared, integrals);
+    }
+};
+
+// Never destroyed: nodes may be, after everything static.
+[[maybe_unused]] const bool installed = [] {
+    setRenderer(new VolumeRenderer);
+    return true;
+}();
+
+} // namespace
+
+} // namespace render
+} // namespace osgVolumizer

@@ -1,0 +1,197 @@
+#include "SettingsInForce.h"
+
+#include "../context/ReportOnce.h"
+#include "../draw/RayFunctions.h"
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+bool overlapSuffices(const Voxels& voxels, int samples)
+{
+    return voxels.getLayout().brickCount() <= 1 || voxels.getOverlap() >= samples;
+}
+
+// What rules slabs out; the first thing that does. Empty where nothing does.
+std::string whyNoSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
+{
+    if (!appearance.getVoxels()) return "there are no voxels";
+    if (!prepared.voxelFrame) return "no one affine map leads to the voxel frame";
+    if (!prepared.region) return "the region is not convex";
+    if (prepared.tetras.vertices.format().colorSize != 0) return "vertices have colours";
+    if (appearance.getTechnique() == VolumeAppearance::AUTOMATIC &&
+        appearance.getSamplingMode() != SamplingMode::VIEWPORT_ALIGNED)
+        return "sampling surfaces other than VIEWPORT_ALIGNED are asked for";
+    return {};
+}
+
+void explainTechnique(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                      VolumeAppearance::Settings& settings)
+{
+    const auto asked = appearance.getTechnique();
+    settings.technique =
+        usesSlabs(appearance, prepared) ? VolumeAppearance::SLABS : VolumeAppearance::SLICES;
+    if (settings.technique == asked) return;
+    const std::string why = whyNoSlabs(appearance, prepared);
+    settings.reasons.push_back(why.empty() ? "the region is convex, in one voxel frame; the "
+                                             "technique is slabs"
+                                           : why + "; the technique is slices");
+}
+
+void explainLookup(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                   bool integrals, VolumeAppearance::Settings& settings)
+{
+    const auto asked = appearance.getLookup();
+    settings.lookup = integrals ? VolumeAppearance::PREINTEGRATED
+                      : looksUpBefore(appearance, settings.rayFunction, settings.interpolation)
+                          ? VolumeAppearance::BEFORE_INTERPOLATION
+                          : VolumeAppearance::AFTER_INTERPOLATION;
+    if (settings.lookup == asked) return;
+    if (integrals)
+        settings.reasons.push_back("samples would miss jumps or peaks of the table; lookup is "
+                                   "preintegrated");
+    else if (asked == VolumeAppearance::AUTOMATIC_LOOKUP &&
+             usedLookup(appearance, prepared) == asked)
+        settings.reasons.push_back("the table is smooth; lookup is after interpolation");
+    else
+        settings.reasons.push_back("another lookup needs composited voxels of one component in one "
+                                   "voxel frame, interpolated linearly or better; lookup is after "
+                                   "interpolation");
+}
+
+// A volume that paints is sampled by the shaders of those it paints.
+void explainPaint(const VolumeAppearance& appearance, VolumeAppearance::Settings& settings)
+{
+    if (appearance.getCombineRule() != VolumeAppearance::PAINT) return;
+    if (settings.interpolation == VolumeAppearance::CUBIC) {
+        settings.interpolation = VolumeAppearance::LINEAR;
+        settings.reasons.push_back("a volume that paints is interpolated linearly");
+    }
+    if (settings.lookup != VolumeAppearance::AFTER_INTERPOLATION) {
+        settings.lookup = VolumeAppearance::AFTER_INTERPOLATION;
+        settings.reasons.push_back("a volume that paints is looked up after interpolation");
+    }
+    settings.shading = false;
+}
+
+} // namespace
+
+VolumeAppearance::Interpolation usedInterpolation(const VolumeAppearance& appearance,
+                                                  Reasons& reasons)
+{
+    const Voxels* voxels = appearance.getVoxels();
+    const auto asked = appearance.getInterpolation();
+    if (!voxels || asked != VolumeAppearance::CUBIC || overlapSuffices(*voxels, 3)) return asked;
+    reasons.push_back("cubic interpolation needs bricks that share 3 samples, but the voxels' "
+                      "overlap is " +
+                      std::to_string(voxels->getOverlap()) + "; interpolation is linear");
+    return VolumeAppearance::LINEAR;
+}
+
+bool usesSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
+{
+    return appearance.getTechnique() != VolumeAppearance::SLICES &&
+           whyNoSlabs(appearance, prepared).empty();
+}
+
+VolumeAppearance::RayFunction usedRayFunction(const VolumeAppearance& appearance,
+                                              const PreparedGeometry& prepared, Reasons& reasons)
+{
+    const auto asked = appearance.getRayFunction();
+    const Voxels* voxels = appearance.getVoxels();
+    if (!voxels) return VolumeAppearance::COMPOSITE;
+    const RayFunctionRow& row = rowOf(asked);
+    const std::string name =
+        std::string("ray function ") + VolumeAppearance::RAY_FUNCTION_NAMES[asked];
+    if (row.needsOneComponent && voxels->getComponents() != 1) {
+        reasons.push_back(name + " needs voxels of one component, but these have " +
+                          std::to_string(voxels->getComponents()) + "; they are composited");
+        return VolumeAppearance::COMPOSITE;
+    }
+    if (row.needsSlabs && !usesSlabs(appearance, prepared)) {
+        reasons.push_back(name + " needs slabs, and so a convex region in one voxel frame; the "
+                                 "volume is composited");
+        return VolumeAppearance::COMPOSITE;
+    }
+    return asked;
+}
+
+bool usesShading(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                 VolumeAppearance::RayFunction function, Reasons& reasons)
+{
+    const Voxels* voxels = appearance.getVoxels();
+    if (!appearance.getShading() || !voxels) return false;
+    if (rowOf(function).gathers) return false; // values have no colour yet
+    if (!prepared.voxelFrame) {
+        reasons.push_back("shading needs one affine map to the voxel frame; the deformed "
+                          "volume is not lit");
+        return false;
+    }
+    if (!overlapSuffices(*voxels, appearance.getRequiredOverlap()))
+        reasons.push_back("shading without seams needs bricks that share " +
+                          std::to_string(appearance.getRequiredOverlap()) +
+                          " samples, but the voxels' overlap is " +
+                          std::to_string(voxels->getOverlap()));
+    return true;
+}
+
+VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
+                                    const PreparedGeometry& prepared)
+{
+    // Runs of values need scalars that vary, and the ray in the voxel frame, which slices of a
+    // deformed volume do not know.
+    Reasons ofRayFunction;
+    const bool runs = prepared.voxelFrame && appearance.getVoxels()->getComponents() == 1 &&
+                      appearance.getInterpolation() != VolumeAppearance::NEAREST &&
+                      rowOf(usedRayFunction(appearance, prepared, ofRayFunction)).integratesLight;
+    return runs ? appearance.getLookup() : VolumeAppearance::AFTER_INTERPOLATION;
+}
+
+bool looksUpBefore(const VolumeAppearance& appearance, VolumeAppearance::RayFunction function,
+                   VolumeAppearance::Interpolation interpolation)
+{
+    // Of nearest samples the two orders give the same.
+    return rowOf(function).integratesLight && interpolation != VolumeAppearance::NEAREST &&
+           appearance.getLookup() == VolumeAppearance::BEFORE_INTERPOLATION;
+}
+
+bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                      Reasons& reasons)
+{
+    Reasons ofOthers;
+    const auto function = usedRayFunction(appearance, prepared, ofOthers);
+    if (usesSlabs(appearance, prepared) && appearance.getVoxels()->getComponents() == 1 &&
+        rowOf(function).integratesLight && !usesShading(appearance, prepared, function, ofOthers) &&
+        appearance.getLookup() != VolumeAppearance::BEFORE_INTERPOLATION)
+        return true;
+    reasons.push_back("an error tolerance needs slabs, composited and not lit, and voxels of one "
+                      "component looked up after interpolation; the sampling period is used");
+    return false;
+}
+
+VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
+                                           const PreparedGeometry& prepared, bool integrals)
+{
+    VolumeAppearance::Settings settings;
+    Reasons& reasons = settings.reasons;
+    explainTechnique(appearance, prepared, settings);
+    settings.interpolation = usedInterpolation(appearance, reasons);
+    settings.rayFunction = usedRayFunction(appearance, prepared, reasons);
+    settings.shading = usesShading(appearance, prepared, settings.rayFunction, reasons);
+    if (!appearance.getVoxels()) return settings;
+    explainLookup(appearance, prepared, integrals, settings);
+    if (appearance.getErrorTolerance() > 0.0) (void)canKeepTolerance(appearance, prepared, reasons);
+    explainPaint(appearance, settings);
+    return settings;
+}
+
+void reportReasons(const VolumeAppearance& appearance, const Reasons& reasons)
+{
+    for (const std::string& reason : reasons)
+        reportOnce({ErrorCode::NOT_SUPPORTED,
+                    "VolumeAppearance \"" + appearance.getName() + "\": " + reason});
+}
+
+} // namespace render
+} // namespace osgVolumizer

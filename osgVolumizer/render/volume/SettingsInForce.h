@@ -1,0 +1,47 @@
+#pragma once
+
+#include "PreparedGeometry.h"
+
+#include "../../VolumeAppearance.h"
+
+#include <string>
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+/// Why settings of an appearance are not in force: what cannot be done, and what is done instead.
+using Reasons = std::vector<std::string>;
+
+// Each of the following adds its reasons, which a frame reports as errors.
+
+/// What bricks that share too few samples leave of CUBIC.
+VolumeAppearance::Interpolation usedInterpolation(const VolumeAppearance& appearance,
+                                                  Reasons& reasons);
+/// Slabs, where they were not ruled out, or slices.
+bool usesSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepared);
+VolumeAppearance::RayFunction usedRayFunction(const VolumeAppearance& appearance,
+                                              const PreparedGeometry& prepared, Reasons& reasons);
+bool usesShading(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                 VolumeAppearance::RayFunction function, Reasons& reasons);
+/// When the table can be applied, of what the appearance asks for: AUTOMATIC_LOOKUP where the table
+/// is to decide. Expects voxels.
+VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
+                                    const PreparedGeometry& prepared);
+/// Whether samples are looked up before they are interpolated.
+bool looksUpBefore(const VolumeAppearance& appearance, VolumeAppearance::RayFunction function,
+                   VolumeAppearance::Interpolation interpolation);
+/// Whether periods can be chosen for an error tolerance: composited slabs without light, of voxels
+/// of one component that are looked up after interpolation. Expects voxels.
+bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                      Reasons& reasons);
+
+/// All of them together. `integrals`: whether the table that is used holds them.
+VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
+                                           const PreparedGeometry& prepared, bool integrals);
+
+/// Reports each reason once in the life of the process.
+void reportReasons(const VolumeAppearance& appearance, const Reasons& reasons);
+
+} // namespace render
+} // namespace osgVolumizer
