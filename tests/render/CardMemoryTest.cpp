@@ -4,8 +4,8 @@
 
 #include <osgVolumizer/Error.h>
 #include <osgVolumizer/render/context/Allocation.h>
-#include <osgVolumizer/render/textures/BrickResidency.h>
 #include <osgVolumizer/render/context/ContextLimits.h>
+#include <osgVolumizer/render/textures/BrickResidency.h>
 
 #include <support/GLTest.h>
 
