@@ -15,7 +15,7 @@ namespace core {
 
 namespace {
 
-// The trilinear interpolant in the cell beyond a corner, and exact there; NaN where samples are no
+// The trilinear interpolant in the cell beyond a corner; NaN where samples are no
 // numbers.
 template <class T>
 double interpolate(const VoxelView& view, int component, const glm::ivec3& corner,
@@ -92,7 +92,9 @@ double ValueReader::value(const glm::dvec3& positionVoxel)
     const glm::dvec3 local =
         glm::clamp(positionVoxel - brick->first, glm::dvec3(0.0), glm::dvec3(last));
     const bool nearest = _interpolation == NEAREST;
-    const glm::dvec3 corner = glm::floor(nearest ? local + 0.5 : local);
+    const glm::dvec3 whole =
+        nearest ? glm::floor(local + 0.5) : glm::min(glm::floor(local), glm::dvec3(last - 1));
+    const glm::dvec3 corner = glm::max(whole, glm::dvec3(0.0));
     const glm::dvec3 fraction = nearest ? glm::dvec3(0.0) : local - corner;
     const double value = brick->read(view, _component, glm::ivec3(corner), fraction);
     return std::isnan(value) ? _holeValue : value;
