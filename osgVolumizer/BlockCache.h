@@ -27,7 +27,7 @@ public:
     void add(const Key& key, const VoxelBlock& block, bool shared);
     void remove(const Key& key);
     void clear();
-    /// Of blocks with memory of their own.
+    /// Counts blocks with memory of their own.
     std::size_t bytes() const;
 
 private:

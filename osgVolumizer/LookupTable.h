@@ -60,7 +60,8 @@ public:
     /// Grows with every change, to a number that no other table has had. Thread safe.
     unsigned getModifiedCount() const { return _modifiedCount; }
 
-    /// How a scene file refers to the table; empty: inline.
+    /// The name by which a scene file refers to the table, which it holds itself where this is
+    /// empty.
     void setFileName(const std::string& name) { _fileName = name; }
     const std::string& getFileName() const { return _fileName; }
 

@@ -15,7 +15,7 @@ namespace osgVolumizer {
 
 class VolumeGeometry;
 
-/// What the volume geometry below is filled with: voxels, lookup table, sampling, shading.
+/// Fills the volume geometry below it: voxels, lookup table, sampling, shading.
 class OSGVOLUMIZER_EXPORT VolumeAppearance : public osg::Group
 {
 public:
@@ -38,7 +38,7 @@ public:
         LINEAR,
         CUBIC
     };
-    /// When the lookup table is applied.
+    /// Selects whether values are interpolated first or looked up first.
     enum Lookup
     {
         /// PREINTEGRATED for tables with jumps or peaks that sampling would miss, else
@@ -56,8 +56,8 @@ public:
         PREINTEGRATED
     };
 
-    /// What a pixel shows of the values on its ray, within the volume and in front of opaque
-    /// geometry.
+    /// Selects what a pixel shows of the values on its ray, within the volume and in front of
+    /// opaque geometry.
     enum RayFunction
     {
         /// Light emitted and absorbed along the ray. All other functions draw the volume as one
@@ -83,6 +83,7 @@ public:
     static constexpr const char* const RAY_FUNCTION_NAMES[] = {
         "COMPOSITE", "MAXIMUM", "MINIMUM", "AVERAGE", "SUM", "ISOSURFACE"};
     /// What happens where volumes overlap.
+    /// Selects what volumes do to one another where they overlap.
     enum CombineRule
     {
         /// Extinctions add, and each emits its own colour: clouds in one another.
@@ -97,7 +98,7 @@ public:
         /// with a ray function that gathers values are not painted.
         PAINT
     };
-    /// Where gradients for shading come from. Both are central differences over a sample's
+    /// Selects how gradients for shading are found. Both are central differences over a sample's
     /// distance.
     enum Gradients
     {
@@ -117,7 +118,7 @@ public:
     /// appearances share becomes one for each.
     VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
-    /// As any group, but that osgUtil::Optimizer takes no transform from above it.
+    /// Visits as any group does, but osgUtil::Optimizer takes no transform from above it.
     void accept(osg::NodeVisitor& visitor) override;
 
     void setVoxels(Voxels* voxels);
@@ -139,7 +140,7 @@ public:
     bool getExactFiltering() const { return _exactFiltering; }
     void setRayFunction(RayFunction function) { _rayFunction = function; }
     RayFunction getRayFunction() const { return _rayFunction; }
-    /// Of ISOSURFACE, as a data value; finite. Default 0.5.
+    /// The data value of ISOSURFACE; finite. Default 0.5.
     ReportedStatus setIsoValue(double dataValue);
     double getIsoValue() const { return _isoValue; }
 
@@ -210,8 +211,8 @@ public:
     /// The unit in force.
     double getEffectiveOpacityUnit() const;
 
-    /// What a volume is drawn with in place of what was asked for, where that cannot be had, or was
-    /// left to the library.
+    /// The settings that a volume is drawn with. They differ from those of the appearance where its
+    /// geometry or voxels do not allow these, and where the choice was left to the library.
     struct Settings
     {
         Technique technique = SLABS;
@@ -222,8 +223,8 @@ public:
         /// A sentence for each that differs from what was asked for.
         std::vector<std::string> reasons;
     };
-    /// Of `geometry`, which is to lie below. May read voxels, as a frame would. Volumes that are
-    /// merged with others one by one, slice after slice, are still those of these settings.
+    /// Finds the settings for `geometry`, which need not lie below. Decides as a frame does, and so
+    /// may read voxels. May be called from any thread between changes.
     Settings getSettingsInForce(const VolumeGeometry& geometry) const;
 
     void resizeGLObjectBuffers(unsigned int maximum) override;

@@ -24,7 +24,7 @@ class OSGVOLUMIZER_EXPORT VolumeGeometry : public osg::Drawable
 public:
     META_Object(osgVolumizer, VolumeGeometry);
 
-    /// How a box is cut into tetrahedra.
+    /// Selects the tetrahedra that a box is cut into.
     enum BoxTessellation
     {
         FIVE,

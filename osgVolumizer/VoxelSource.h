@@ -26,8 +26,8 @@ struct VoxelBlock
     explicit operator bool() const { return data != nullptr; }
 };
 
-/// Where voxels come from. Subclass it to page from a database, a simulation or a formula.
-/// Every method may be called from any thread, several at once.
+/// Supplies the samples of a volume. Subclass it to page from a database, a simulation or a
+/// formula. Every method may be called from any thread, several at once.
 class OSGVOLUMIZER_EXPORT VoxelSource : public osg::Object
 {
 public:

@@ -98,8 +98,8 @@ public:
     /// have had. Thread safe.
     unsigned getLayoutCount() const { return _layoutCount; }
 
-    /// How a scene file refers to the voxels: a name for readVoxels(), with its options. Empty:
-    /// inline.
+    /// The name by which a scene file refers to the voxels, for readVoxels(), and its options.
+    /// Where it is empty, the scene file holds the voxels.
     void setFileName(const std::string& name) { _fileName = name; }
     const std::string& getFileName() const { return _fileName; }
     void setFileOptions(const std::string& options) { _fileOptions = options; }

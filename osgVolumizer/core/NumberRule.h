@@ -5,7 +5,7 @@
 namespace osgVolumizer {
 namespace core {
 
-/// Which numbers a property may have, and how a message says so.
+/// The numbers that a property may have, and the words for them in a message.
 struct NumberRule
 {
     double low, high; ///< both included
@@ -27,7 +27,8 @@ inline constexpr NumberRule POSITION{-1e18, 1e18, false, "a number from -1e+18 t
 /// entries of a table, in 32-bit floats.
 inline constexpr NumberRule RANGE_WIDTH{1e-30, std::numeric_limits<double>::max(), false,
                                         "a finite width of at least 1e-30"};
-/// Of reflection: eight lights at the bound do not overflow 16-bit floats, which end at 65504.
+/// Coefficients of reflection: eight lights at the bound do not overflow 16-bit floats, which end
+/// at 65504.
 inline constexpr NumberRule COEFFICIENT{0.0, 1e3, false, "a number from 0 to 1000"};
 /// 32-bit floats tell no angles apart that would matter to a larger one.
 inline constexpr NumberRule SHININESS{0.0, 1e7, false, "a number from 0 to 1e+07"};

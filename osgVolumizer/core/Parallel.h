@@ -14,7 +14,7 @@ class OSGVOLUMIZER_CORE_EXPORT Executor
 {
 public:
     virtual ~Executor() = default;
-    /// How many tasks can run at the same time, >= 1.
+    /// The number of tasks that can run at the same time, >= 1.
     virtual int concurrency() const = 0;
     /// Calls task(0) ... task(count - 1), in any order, and returns when all have returned. Tasks
     /// do not throw. Called by one thread at a time.

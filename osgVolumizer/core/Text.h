@@ -24,7 +24,7 @@ OSGVOLUMIZER_CORE_EXPORT std::vector<std::string_view> splitText(std::string_vie
                                                                  char separator);
 /// The pieces between blanks (blank, tabulator, line ends), none of them empty.
 OSGVOLUMIZER_CORE_EXPORT std::vector<std::string_view> splitBlanks(std::string_view text);
-/// As few digits as read back to the same number.
+/// Writes as few digits as read back to the same number.
 OSGVOLUMIZER_CORE_EXPORT std::string formatNumber(double value);
 /// "x,y,z"
 OSGVOLUMIZER_CORE_EXPORT std::string formatTriple(const glm::ivec3& v);

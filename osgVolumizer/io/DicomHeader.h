@@ -14,10 +14,10 @@
 namespace osgVolumizer {
 namespace io {
 
-/// What a DICOM file (PS3.10, little endian, not compressed, one sample per pixel) says of its
-/// voxels. OpenImageIO opens such files too, but gives signed pixels wrapped around zero, stretches
-/// 12 bits to 16, loses the rescale intercept and all frames but the first; calibrated values need
-/// the file itself.
+/// The header of a DICOM file (PS3.10, little endian, not compressed, one sample per pixel), as far
+/// as it describes voxels. OpenImageIO opens such files too, but gives signed pixels wrapped around
+/// zero, stretches 12 bits to 16, loses the rescale intercept and all frames but the first;
+/// calibrated values need the file itself.
 struct DicomHeader
 {
     glm::ivec3 size{0};    ///< columns, rows, frames
@@ -39,7 +39,7 @@ struct DicomHeader
     }
 };
 
-/// Whether a stream starts as a DICOM file does.
+/// True where a stream starts as a DICOM file does.
 OSGVOLUMIZER_EXPORT bool isDicom(std::istream& file);
 /// Reads everything but the pixels. `name` is for messages. FILE_UNREADABLE (cut short or broken),
 /// VALUE_INVALID (an impossible field), SIZE_MISMATCH (pixels), NOT_SUPPORTED (compressed, big

@@ -10,7 +10,7 @@
 namespace osgVolumizer {
 namespace io {
 
-/// How the pixels of an image become voxels.
+/// The format that pixels are read in, and that of the voxels made from them.
 struct PixelFormat
 {
     OIIO::TypeDesc read = OIIO::TypeDesc::UINT8; ///< what OpenImageIO is asked for
@@ -18,7 +18,7 @@ struct PixelFormat
     VoxelType type = VoxelType::UINT8;
     int components = 1;
 
-    /// Whether what is read is what is stored.
+    /// True where pixels are stored as they are read.
     bool direct() const
     {
         return channels == components && read != OIIO::TypeDesc::INT64 &&
@@ -42,7 +42,7 @@ public:
     glm::ivec3 size() const;
     /// "128,128,1 pixels of 1 x uint8", for messages.
     std::string text() const;
-    /// Of the present subimage; NOT_SUPPORTED for types that are no numbers.
+    /// The format of the present subimage; NOT_SUPPORTED for types that are no numbers.
     Result<PixelFormat> pixelFormat() const;
     /// Slices that can be read at a time: the depth of a tile.
     int sliceStep() const;

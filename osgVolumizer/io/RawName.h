@@ -11,7 +11,7 @@
 namespace osgVolumizer {
 namespace io {
 
-/// What the name of a raw file says: "engine.raw.256,256,110,uint8[,headerBytes[,big|little]]".
+/// The parts of a raw file's name: "engine.raw.256,256,110,uint8[,headerBytes[,big|little]]".
 struct RawName
 {
     std::string fileName; ///< "engine.raw"
@@ -24,7 +24,7 @@ struct RawName
     std::int64_t fileBytes() const;
 };
 
-/// Whether the part behind the last dot is a list, and so meant as the format of a raw file.
+/// True where the part behind the last dot is a list, and so meant as the format of a raw file.
 OSGVOLUMIZER_EXPORT bool looksRaw(const std::string& name);
 /// Refuses (VALUE_INVALID) with the field and its value.
 OSGVOLUMIZER_EXPORT Result<RawName> parseRawName(const std::string& name);

@@ -26,7 +26,7 @@ Result<Source> readImage(const std::string& path, const Progress& progress);
 /// readDicom().
 Result<Source> readStack(const std::vector<std::string>& paths, const Progress& progress);
 
-/// Whether a file starts as DICOM does.
+/// True where a file starts as DICOM does.
 bool isDicomFile(const std::string& path);
 /// One DICOM file with any number of frames, or one per slice, sorted along the patient (or by
 /// instance number). Data values with slope and intercept (HU for a CT), in the narrowest type that
@@ -38,7 +38,7 @@ Result<Source> readDicom(const std::vector<std::string>& paths, const Progress& 
 /// not count.
 Result<std::vector<std::string>> listFolder(const std::string& folder);
 
-/// Whether a name holds "%d", "%03d" or "###".
+/// True where a name holds "%d", "%03d" or "###".
 bool looksLikePattern(const std::string& name);
 /// The files of a numbered pattern, by number, which must have no gaps. A pattern with a relative
 /// folder is looked for in each of `folders`.

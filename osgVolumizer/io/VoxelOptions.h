@@ -12,7 +12,7 @@
 namespace osgVolumizer {
 namespace io {
 
-/// What a loader's option string may say; see readVoxels(). Only what was said is set.
+/// The values in a loader's option string; see readVoxels(). Those that it lacks are not set.
 struct VoxelOptions
 {
     std::optional<glm::dvec3> spacing; ///< object units, each > 0

@@ -49,27 +49,28 @@ TEST(FaceCache, EveryInputCounts)
     FaceCache cache;
     const auto set = box();
     const SamplingParameters p;
-    cache.faces(1, set, BOXES, turned(0.0), p);
-    cache.faces(2, set, BOXES, turned(0.0), p); // another view
+    EXPECT_TRUE(cache.faces(1, set, BOXES, turned(0.0), p));
+    EXPECT_TRUE(cache.faces(2, set, BOXES, turned(0.0), p)); // another view
     EXPECT_EQ(cache.polygonizations(), 2u);
-    cache.faces(1, box(), BOXES, turned(0.0), p); // another set, though it looks the same
+    EXPECT_TRUE(
+        cache.faces(1, box(), BOXES, turned(0.0), p)); // another set, though it looks the same
     EXPECT_EQ(cache.polygonizations(), 3u);
-    cache.faces(1, set, {}, turned(0.0), p);
+    EXPECT_TRUE(cache.faces(1, set, {}, turned(0.0), p));
     EXPECT_EQ(cache.polygonizations(), 4u);
     SamplingParameters finer = p;
     finer.periodVoxel.y = 0.5;
-    cache.faces(1, set, {}, turned(0.0), finer);
+    EXPECT_TRUE(cache.faces(1, set, {}, turned(0.0), finer));
     EXPECT_EQ(cache.polygonizations(), 5u);
-    cache.faces(1, set, {}, turned(1e-6), finer);
+    EXPECT_TRUE(cache.faces(1, set, {}, turned(1e-6), finer));
     EXPECT_EQ(cache.polygonizations(), 6u);
     View nearer = turned(1e-6); // the depths that are reported differ
     nearer.toEye[3].z += 1.0;
-    cache.faces(1, set, {}, nearer, finer);
+    EXPECT_TRUE(cache.faces(1, set, {}, nearer, finer));
     EXPECT_EQ(cache.polygonizations(), 7u);
     finer.space = SamplingSpace::VIEW_VOLUME;
-    cache.faces(1, set, {}, nearer, finer);
+    EXPECT_TRUE(cache.faces(1, set, {}, nearer, finer));
     nearer.projection = glm::perspective(0.3, 2.0, 1.0, 900.0);
-    cache.faces(1, set, {}, nearer, finer);
+    EXPECT_TRUE(cache.faces(1, set, {}, nearer, finer));
     EXPECT_EQ(cache.polygonizations(), 9u);
     EXPECT_EQ(cache.viewCount(), 2u);
     cache.forget(2);
@@ -82,7 +83,7 @@ TEST(FaceCache, SlackIsMeasuredFromWhereTheFacesWereMade)
     const auto set = box();
     const SamplingParameters p;
     for (int i = 0; i <= 20; ++i)
-        cache.faces(1, set, BOXES, turned(0.01 * i), p, 0.0501);
+        EXPECT_TRUE(cache.faces(1, set, BOXES, turned(0.01 * i), p, 0.0501));
     EXPECT_EQ(cache.polygonizations(), 4u); // at 0, 6, 12, 18 hundredths
     EXPECT_EQ(cache.faces(1, set, BOXES, turned(0.0), p, -1.0).status.code,
               ErrorCode::VALUE_INVALID);
@@ -95,14 +96,14 @@ TEST(FaceCache, VoxelAxesNeedNoNewFacesWhileTheAxisHolds)
     SamplingParameters p;
     p.mode = SamplingMode::AXIS_ALIGNED;
     for (int i = 0; i < 10; ++i)
-        cache.faces(1, set, BOXES, turned(0.01 * i), p);
+        EXPECT_TRUE(cache.faces(1, set, BOXES, turned(0.01 * i), p));
     EXPECT_EQ(cache.polygonizations(), 1u);
     View inside; // the order of the planes depends on the eye
     inside.projection = glm::perspective(1.0, 1.0, 0.1, 100.0);
     inside.toEye = glm::lookAt(glm::dvec3(4.0, 4.0, 3.0), glm::dvec3(4.5, 4.0, 20.0), {0, 1, 0});
-    cache.faces(1, set, BOXES, inside, p);
+    EXPECT_TRUE(cache.faces(1, set, BOXES, inside, p));
     inside.toEye = glm::lookAt(glm::dvec3(4.0, 4.0, 5.0), glm::dvec3(4.5, 4.0, 20.0), {0, 1, 0});
-    cache.faces(1, set, BOXES, inside, p);
+    EXPECT_TRUE(cache.faces(1, set, BOXES, inside, p));
     EXPECT_EQ(cache.polygonizations(), 3u);
 }
 

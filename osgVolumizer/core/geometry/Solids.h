@@ -12,7 +12,8 @@
 namespace osgVolumizer {
 namespace core {
 
-/// How a box is cut into tetrahedra: 5, 24 (about its centre, symmetric), or one that encloses it.
+/// The number of tetrahedra that a box is cut into: 5, 24 (about its centre, symmetric), or one
+/// that encloses it.
 enum class BoxTessellation : int
 {
     FIVE,
@@ -107,7 +108,7 @@ struct OSGVOLUMIZER_CORE_EXPORT GeodesicSphere
     Result<TetraSet> tessellate() const;
 };
 
-/// What is left of a box without a sphere that lies inside it: hexahedra between sphere and box,
+/// A box without a sphere that lies inside it: hexahedra between sphere and box,
 /// each face of the box divided `divisions` times. VALUE_INVALID where the sphere touches the box.
 struct OSGVOLUMIZER_CORE_EXPORT BoxMinusSphere
 {
@@ -118,7 +119,7 @@ struct OSGVOLUMIZER_CORE_EXPORT BoxMinusSphere
     Result<TetraSet> tessellate() const;
 };
 
-/// What is left of a box with a hole drilled through it along an axis.
+/// A box with a hole drilled through it along an axis.
 struct OSGVOLUMIZER_CORE_EXPORT BoxMinusCylinder
 {
     Box3d box;

@@ -44,7 +44,7 @@ public:
         std::uint8_t a, b; ///< vertices of the block
     };
 
-    /// Where a tetrahedron lies among the clip boxes: CLIP, OUTSIDE, or the box that holds all of
+    /// The place of a tetrahedron among the clip boxes: CLIP, OUTSIDE, or the box that holds all of
     /// it in its low bits, with bit FACE_SHIFT + i set where the face opposite vertex i lies in an
     /// upper plane of the box. Such a face belongs to the next box, if it is a slice.
     using Place = std::uint32_t;

@@ -26,7 +26,7 @@ OSGVOLUMIZER_CORE_EXPORT double volume(const TetraSet& set);
 /// Turns inverted tetrahedra round; returns how many.
 OSGVOLUMIZER_CORE_EXPORT std::size_t repairOrientation(TetraSet& set);
 
-/// Who lies behind which face.
+/// The neighbours of each tetrahedron.
 struct Adjacency
 {
     static constexpr std::int32_t NONE = -1;
@@ -37,7 +37,7 @@ struct Adjacency
     std::vector<std::uint32_t> nonManifold;
 };
 
-/// By vertex indices.
+/// Two tetrahedra are neighbours where they share three vertex indices.
 OSGVOLUMIZER_CORE_EXPORT Adjacency findAdjacency(const TetraSet& set);
 
 /// Vertex indices of the triangles with a tetrahedron on one side only, counter-clockwise from

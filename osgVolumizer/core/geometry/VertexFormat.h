@@ -20,8 +20,9 @@ enum class VertexLayout : int
     USER ///< T3F_C4F_V3F fields as asked for, plus userValues
 };
 
-/// Where the fields of a vertex record are. Offsets and sizes in values (not bytes); an absent
-/// field has size 0. Every field is interpolated linearly when a tetrahedron is sampled or clipped.
+/// The places of the fields in a vertex record. Offsets and sizes count values (not bytes); an
+/// absent field has size 0. Every field is interpolated linearly when a tetrahedron is sampled or
+/// clipped.
 struct VertexFormat
 {
     VertexLayout layout = VertexLayout::V3F;

@@ -27,7 +27,7 @@ struct ScheduleMember
     double step = 0.0; ///< volumes: depth between samples, > 0
 };
 
-/// How thick the intervals are that several members share, in steps of the finest volume in them.
+/// Bounds the thickness of intervals that several members share, in steps of their finest volume.
 struct ScheduleLimits
 {
     double surfaceSteps = 16.0; ///< one volume with surfaces in it

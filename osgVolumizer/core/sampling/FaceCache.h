@@ -16,10 +16,10 @@ namespace core {
 /// of slack, while the surfaces have turned by no more than that since they were made (the guide's
 /// lazy evaluation: the faces are those of the older view, their surfaceDepths too).
 ///
-/// What matters of a view: with OBJECT or PRIMITIVE space and planes across the view, the direction
-/// and length of the depth's gradient and, for the depths that are reported, its offset; with voxel
-/// axes the axis and the side of the eye. Everything, where faces are culled to the view, are
-/// spheres, depend on the view volume, or where the eye is between planes along an axis.
+/// A view matters as follows: with OBJECT or PRIMITIVE space and planes across the view, the
+/// direction and length of the depth's gradient and, for the depths that are reported, its offset;
+/// with voxel axes the axis and the side of the eye. Everything, where faces are culled to the
+/// view, are spheres, depend on the view volume, or where the eye is between planes along an axis.
 ///
 /// Any number of threads; different views do not wait for each other's polygonization. One view is
 /// polygonized by one thread at a time.
@@ -50,7 +50,7 @@ public:
     void clear();
 
     std::size_t viewCount() const;
-    /// How many calls polygonized, and how many did not need to.
+    /// The number of calls that polygonized, and of those that did not need to.
     std::uint64_t polygonizations() const;
     std::uint64_t reuses() const;
 

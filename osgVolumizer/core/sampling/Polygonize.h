@@ -25,7 +25,7 @@ struct FaceRange
     std::uint32_t firstIndex = 0, indexCount = 0;
 };
 
-/// What polygonize() makes: faces per surface and brick, far to near.
+/// The result of polygonize(): faces per surface and brick, far to near.
 struct PolygonizedFaces
 {
     /// Records in the tetra set's format; positions are relative to

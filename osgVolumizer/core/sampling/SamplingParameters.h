@@ -7,7 +7,7 @@
 
 namespace osgVolumizer {
 
-/// Which family of surfaces samples a volume.
+/// Selects the family of surfaces that samples a volume.
 enum class SamplingMode : int
 {
     VIEWPORT_ALIGNED,

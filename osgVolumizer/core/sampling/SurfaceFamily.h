@@ -23,8 +23,8 @@ public:
     virtual double depth(const glm::dvec3& position, const glm::dvec3& voxel) const = 0;
     /// Wanted distance between surfaces, > 0, in the unit of depth().
     virtual double spacing() const = 0;
-    /// How far the interpolant may differ from depth(), in multiples of spacing(): tetrahedra are
-    /// bisected until it does not. 0: depth() is linear in every tetrahedron.
+    /// The most that the interpolant may differ from depth(), in multiples of spacing(): tetrahedra
+    /// are bisected until it does not. 0: depth() is linear in every tetrahedron.
     virtual double tolerance() const { return 0.0; }
 };
 

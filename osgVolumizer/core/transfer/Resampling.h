@@ -7,7 +7,7 @@
 namespace osgVolumizer {
 namespace core {
 
-/// Where the texels of a table lie: see TransferFunction::tabulateExtinction.
+/// Selects the places of a table's texels: see TransferFunction::tabulateExtinction.
 enum class TexelPlaces : int
 {
     ENDS,
@@ -18,7 +18,7 @@ enum class TexelPlaces : int
 /// one unit, between the function and `count` texels of tabulateExtinction() with linear
 /// interpolation between them (constant beyond the outermost). Sampled at the function's points, on
 /// both sides of each, and at several places between any two texels: exact to about 5 % of itself.
-/// Once above `stopAbove` it stops looking, and returns what it found.
+/// It stops at the first difference above `stopAbove`, and returns that.
 OSGVOLUMIZER_CORE_EXPORT double resamplingError(const TransferFunction& function, int count,
                                                 double low, double high, TexelPlaces places,
                                                 double stopAbove = INFINITY);

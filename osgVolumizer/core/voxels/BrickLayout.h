@@ -16,7 +16,7 @@ struct BrickPlace
     Box3d clipBox; ///< voxel frame; clip boxes of neighbours tile [0, N-1] without gap or overlap
 };
 
-/// What happens where the volume's size is no multiple of the brick's.
+/// Selects what is done where the volume's size is no multiple of the brick's.
 enum class PartialBricks : int
 {
     SHRINK_TO_FIT, ///< the last brick of each axis is smaller
@@ -24,7 +24,7 @@ enum class PartialBricks : int
     AVERAGE_UP     ///< all bricks keep their size: the last is moved back, sharing more samples
 };
 
-/// How a volume of N samples an axis is cut into bricks. Overlap 1 is enough for trilinear
+/// Cuts a volume of N samples an axis into bricks. Overlap 1 is enough for trilinear
 /// filtering, 3 for cubic, +2 for gradients by central differences. A regular lattice of clip
 /// boxes, so visibility order is exact per axis.
 class OSGVOLUMIZER_CORE_EXPORT BrickLayout
