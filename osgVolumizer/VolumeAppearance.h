@@ -82,7 +82,6 @@ public:
     /// The names of the ray functions, in files too, in the order of their values.
     static constexpr const char* const RAY_FUNCTION_NAMES[] = {
         "COMPOSITE", "MAXIMUM", "MINIMUM", "AVERAGE", "SUM", "ISOSURFACE"};
-    /// What happens where volumes overlap.
     /// Selects what volumes do to one another where they overlap.
     enum CombineRule
     {
