@@ -81,7 +81,7 @@ TEST_F(SettingsInForce, TheGeometryDecidesAboutSlabs)
     EXPECT_EQ(settings().technique, A::SLICES);
     EXPECT_TRUE(hasReason("not convex"));
     EXPECT_EQ(settings().rayFunction, A::COMPOSITE);
-    EXPECT_TRUE(hasReason("isosurfaces need slabs"));
+    EXPECT_TRUE(hasReason("ISOSURFACE needs slabs"));
 }
 
 TEST_F(SettingsInForce, TheVoxelsDecideAboutInterpolationAndRays)

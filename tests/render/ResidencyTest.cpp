@@ -36,7 +36,7 @@ RenderOptions view()
 osg::ref_ptr<A> makeBricked(A::Technique technique)
 {
     const osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(SIZE), bumps);
-    EXPECT_TRUE(voxels->setBrickSize(glm::ivec3(BRICK)));
+    EXPECT_TRUE(voxels->setBrickSize({BRICK, BRICK, BRICK}));
     EXPECT_EQ(voxels->getLayout().brickCount(), BRICKS);
     const osg::ref_ptr<A> volume = makeVolume(voxels);
     volume->setTechnique(technique);
@@ -222,7 +222,7 @@ TEST_P(SlowReads, MakeNobodyWait)
     ASSERT_TRUE(source->setExternal(memory->describe(), memory->data()));
     const osg::ref_ptr<Voxels> voxels = new Voxels(source);
     voxels->setRange(osg::Vec2d(0.0, 1.0));
-    ASSERT_TRUE(voxels->setBrickSize(glm::ivec3(BRICK)));
+    ASSERT_TRUE(voxels->setBrickSize({BRICK, BRICK, BRICK}));
     like->setVoxels(voxels);
     const auto residency = BrickResidency::of(*voxels);
     // In whatever context, of all bricks, among them the one that is being read.
