@@ -44,6 +44,7 @@ struct StateRow
     std::string why;   ///< for the table: what it means, or why not
     Target target = Target::ANY;
     Scope scope = Scope::ALL;
+    bool driverDecides = false; ///< `shows` holds of the software rasteriser only
 };
 
 /// All rows, in the order of the table.

@@ -2,6 +2,7 @@
 
 #include "ProgramInterface.h"
 
+#include <osg/Capability>
 #include <osg/GLExtensions>
 
 namespace osgVolumizer {
@@ -31,6 +32,14 @@ void resetDivisors(osg::State& state, osg::GLExtensions& gl)
     }
 }
 
+// Of the first draw buffer. Some drivers answer glIsEnabled() for all of them.
+bool isBlendingOff(const osg::State& state)
+{
+    const auto type = StateAttribute::Type(StateAttribute::CAPABILITY + GL_BLEND);
+    const StateAttribute* capability = state.getLastAppliedAttribute(type, 0);
+    return dynamic_cast<const osg::Disablei*>(capability) || !glIsEnabled(GL_BLEND);
+}
+
 } // namespace
 
 ForeignStateScope::ForeignStateScope(osg::State& state, bool blends)
@@ -42,7 +51,7 @@ ForeignStateScope::ForeignStateScope(osg::State& state, bool blends)
         _gl.glClampColor(CLAMP_FRAGMENT_COLOR, GL_FALSE);
         state.haveAppliedAttribute(StateAttribute::CLAMPCOLOR);
     }
-    _blendWasOff = blends && _gl.glEnablei && !glIsEnabled(GL_BLEND);
+    _blendWasOff = blends && _gl.glEnablei && isBlendingOff(state);
     if (_blendWasOff) _gl.glEnablei(GL_BLEND, 0);
 }
 

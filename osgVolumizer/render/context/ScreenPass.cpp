@@ -22,7 +22,8 @@ namespace {
 void reachAllPixels(osg::StateSet& set)
 {
     constexpr GLenum RASTERIZER_DISCARD = 0x8C89; // GL_RASTERIZER_DISCARD
-    for (GLenum mode : {GLenum(GL_SCISSOR_TEST), GLenum(GL_POLYGON_STIPPLE), RASTERIZER_DISCARD})
+    for (GLenum mode : {GLenum(GL_SCISSOR_TEST), GLenum(GL_POLYGON_STIPPLE),
+                        GLenum(GL_POLYGON_SMOOTH), RASTERIZER_DISCARD})
         set.setMode(mode, FORCE_OFF);
 }
 

@@ -30,8 +30,8 @@ struct RayFunctionRow
     bool showsIsoValueOnly = false; ///< cells that do not hold the iso-value show nothing
 
     /// Values are gathered from all bricks, in any order, in a target of their own that begins with
-    /// `emptyValue` and blends by `blendEquation` with factors of one; then they are drawn as one
-    /// layer. Else each brick's colours are blended over what is behind.
+    /// `emptyValue` and blends by `blendEquation` with factors of one; then they are drawn at once.
+    /// Else each brick's colours are blended over what is behind.
     bool gathers = false;
     GLenum blendEquation = GL_NONE;
     float emptyValue = 0.0f;

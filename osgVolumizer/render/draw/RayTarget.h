@@ -11,7 +11,7 @@ struct ContextResources;
 
 /// Gathers what all bricks of a volume leave of each pixel's ray, in 32-bit floats, in any order:
 /// the highest or lowest value, or sums. From construction on drawing is redirected; resolve()
-/// looks the values up and draws them as one layer over what was there before. Then everything is
+/// looks the values up and draws them over what was there before, at once. Then everything is
 /// as it was found. To be used in the draw thread, within one drawable.
 class RayTarget
 {

@@ -51,8 +51,9 @@ void keepFacesWhole(osg::StateSet& set)
     constexpr GLenum PRIMITIVE_RESTART = 0x8F9D; // GL_PRIMITIVE_RESTART
     set.setAttribute(new osg::PolygonMode, KEPT);
     for (GLenum mode :
-         {GLenum(GL_CULL_FACE), GLenum(GL_POLYGON_OFFSET_FILL), GLenum(GL_POLYGON_OFFSET_LINE),
-          GLenum(GL_POLYGON_OFFSET_POINT), GLenum(GL_COLOR_LOGIC_OP), PRIMITIVE_RESTART})
+         {GLenum(GL_CULL_FACE), GLenum(GL_POLYGON_SMOOTH), GLenum(GL_POLYGON_OFFSET_FILL),
+          GLenum(GL_POLYGON_OFFSET_LINE), GLenum(GL_POLYGON_OFFSET_POINT),
+          GLenum(GL_COLOR_LOGIC_OP), PRIMITIVE_RESTART})
         set.setMode(mode, KEPT_OFF);
     for (GLenum plane = 0; plane < 8; ++plane)
         set.setMode(GL_CLIP_PLANE0 + plane, KEPT_OFF);

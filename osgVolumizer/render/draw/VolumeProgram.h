@@ -15,7 +15,7 @@ namespace render {
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features);
 /// Below that state: a depth test other than the usual one.
 osg::ref_ptr<osg::StateSet> depthTestStateSet(const DepthTest& test);
-/// Draws what a ray function gathered, of values or of colours, as one layer.
+/// Draws what a ray function gathered, of values or of colours, at once.
 osg::ref_ptr<osg::Program> makeResolveProgram(VolumeAppearance::RayFunction function, bool rgba);
 
 } // namespace render

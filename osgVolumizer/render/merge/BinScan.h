@@ -7,7 +7,7 @@
 namespace osgVolumizer {
 namespace render {
 
-/// What there is to know of a bin and those around it once culling is over.
+/// Questions about a bin and those around it, once culling is over.
 
 /// Whether a bin's leaves are drawn far to near, by nobody else's code.
 bool sortsByDepth(const osgUtil::RenderBin* bin);

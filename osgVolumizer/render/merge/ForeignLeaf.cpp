@@ -124,7 +124,7 @@ std::optional<ForeignLeaf> ForeignLeaf::examine(osgUtil::RenderLeaf& leaf,
     if (!leaf._modelview || !leaf._projection || !leaf.getDrawable()) return std::nullopt;
     const osg::BoundingBox& bounds = leaf.getDrawable()->getBoundingBox();
     if (!bounds.valid() || !sameRays(usualProjection(leaf), projection)) return std::nullopt;
-    // Who is drawn elsewhere cannot be where it seems.
+    // A leaf that is drawn to other viewports does not lie where its matrices put it.
     if (effectiveAttribute(leaf._parent, StateAttribute::VIEWPORTINDEXED)) return std::nullopt;
     // Depth that grows towards the eye orders nothing of ours.
     const osg::Depth* test = effectiveDepth(leaf._parent);

@@ -29,7 +29,7 @@ BoxInView viewOf(const VolumeInstance& volume);
 /// In depth and on the screen.
 bool overlaps(const BoxInView& a, const BoxInView& b);
 
-/// Finds who overlaps whom, by depth and by screen rectangle.
+/// Groups what overlaps, by depth and by screen rectangle.
 /// \param leaves all leaves of the bin; those of the volumes are skipped
 MergeGroups findMergeGroups(const std::vector<VolumeInstance*>& volumes,
                             const std::vector<osgUtil::RenderLeaf*>& leaves);

@@ -31,7 +31,7 @@ void light(const std::vector<VolumeInstance*>& volumes, osgUtil::RenderBin& bin)
     }
 }
 
-// Who has to be merged with whom. What gathers rays is drawn at once, at one depth, which nothing
+// Finds what has to be merged together. What gathers rays is drawn at once, at one depth, which nothing
 // can be merged into.
 MergeGroups groupsOf(const std::vector<VolumeInstance*>& visible,
                      const std::vector<osgUtil::RenderLeaf*>& leaves)

@@ -8,9 +8,9 @@ namespace render {
 /// Makes leaves of intervals in which nothing but volumes is, far to near: as few as the order of
 /// volumes allows, since what is drawn of one volume without another between is one leaf.
 ///
-/// Several volumes are drawn in slabs one step thick, alternating who goes first: the error of
+/// Several volumes are drawn in slabs one step thick, in alternating order: the error of
 /// drawing one slab of A behind one of B, ½ tauA tauB h² (cA - cB), has the other sign in the next
-/// slab, so it cancels, and what remains is second order in h and independent of who is A.
+/// slab, so it cancels, and what remains is second order in h and independent of which one is A.
 class SlabQueue
 {
 public:
@@ -36,7 +36,7 @@ private:
     std::size_t _volume = 0;
 };
 
-/// Who goes first in each of some intervals: it alternates.
+/// The order of volumes in one of several intervals: it is reversed in every second one.
 std::vector<int> alternatingOrder(const core::ScheduledInterval& interval, std::size_t number);
 /// The middle of an interval, which its leaves are sorted by.
 inline double middleOf(const core::DepthInterval& d)

@@ -17,7 +17,7 @@
 namespace osgVolumizer {
 namespace render {
 
-/// What there is of a brick in a context.
+/// Whether a context has a brick.
 enum class Residency : int
 {
     NOT_YET, ///< nothing
