@@ -31,8 +31,8 @@ void light(const std::vector<VolumeInstance*>& volumes, osgUtil::RenderBin& bin)
     }
 }
 
-// Finds what has to be merged together. What gathers rays is drawn at once, at one depth, which nothing
-// can be merged into.
+// Finds what has to be merged together. What gathers rays is drawn at once, at one depth, which
+// nothing can be merged into.
 MergeGroups groupsOf(const std::vector<VolumeInstance*>& visible,
                      const std::vector<osgUtil::RenderLeaf*>& leaves)
 {
