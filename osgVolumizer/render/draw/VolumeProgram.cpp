@@ -15,12 +15,26 @@
 #include <osg/PolygonMode>
 #include <osg/Program>
 
+#include <cassert>
+#include <string>
+
 namespace osgVolumizer {
 namespace render {
 
 namespace {
 
 constexpr char VERSION[] = "#version 330\n";
+
+// A shader with the code of a ray function in its place: before what calls it, as compilers like
+// it.
+std::string withRayFunction(const char* file, VolumeAppearance::RayFunction function)
+{
+    static const std::string place = "#pragma ray_function\n";
+    std::string source = shaderSource(file);
+    const std::size_t at = source.find(place);
+    assert(at != std::string::npos);
+    return source.replace(at, place.size(), rayShaderSource(function));
+}
 
 osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
 {
@@ -35,7 +49,8 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
                              "skipping.glsl", "segment.glsl"})
         fragment += shaderSource(file);
     if (features.paintCount > 0) fragment += paintSource(features.paintCount);
-    fragment += shaderSource(kind + ".frag.glsl") + rayShaderSource(features.rayFunction);
+    fragment +=
+        withRayFunction(features.slab ? "slab.frag.glsl" : "slice.frag.glsl", features.rayFunction);
     result->addShader(makeShader(osg::Shader::FRAGMENT, header, fragment));
     return result;
 }
@@ -118,8 +133,8 @@ osg::ref_ptr<osg::Program> makeResolveProgram(VolumeAppearance::RayFunction func
     osg::ref_ptr<osg::Program> result = new osg::Program;
     result->setName("osgVolumizer resolve");
     result->addShader(makeShader(osg::Shader::VERTEX, header, shaderSource("screen.vert.glsl")));
-    result->addShader(makeShader(osg::Shader::FRAGMENT, header,
-                                 shaderSource("resolve.frag.glsl") + rayShaderSource(function)));
+    result->addShader(
+        makeShader(osg::Shader::FRAGMENT, header, withRayFunction("resolve.frag.glsl", function)));
     return result;
 }
 

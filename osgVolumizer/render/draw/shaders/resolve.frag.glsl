@@ -8,7 +8,8 @@ uniform vec2 valueToEntry;
 uniform float lastEntry;
 
 // The entry of the table for what the ray function gathered; discards where that is nothing.
-float gatheredEntry(vec4 ray);
+// float gatheredEntry(vec4 ray)
+#pragma ray_function
 #endif
 
 void main()

@@ -107,7 +107,8 @@ float sampleCount = 0.0;
 // What the ray function makes of the part of the segment in the brick (both in t). In its loops the place is advanced
 // by the last statement, and what ends them early is in the condition: either saves a third of the time on llvmpipe.
 // Steps that meet nothing are left out whole.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick);
+// vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+#pragma ray_function
 
 // Light of a segment. Colours jump where paint begins, so its parts end there.
 vec4 light(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)

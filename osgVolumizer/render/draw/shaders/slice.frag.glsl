@@ -18,7 +18,8 @@ uniform mat3 rayDirectionEye;
 #endif
 
 // What the ray function makes of a layer of the volume about a place, as thick as given in t.
-vec4 slice(vec3 place, vec3 direction, float thickness);
+// vec4 slice(vec3 place, vec3 direction, float thickness)
+#pragma ray_function
 
 void main()
 {
