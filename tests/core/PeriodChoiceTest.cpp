@@ -1,3 +1,5 @@
+#include "ExtinctionTexels.h"
+
 #include <osgVolumizer/core/accuracy/PeriodChoice.h>
 #include <osgVolumizer/core/accuracy/RaySamples.h>
 
@@ -18,20 +20,9 @@ namespace {
 
 constexpr int COUNT = 16384;
 
-// Extinction as a function of the fraction, of constant colour; with its integrals after it.
 std::vector<glm::vec4> makeTable(const std::function<double(double)>& extinctionBits)
 {
-    std::vector<glm::vec4> texels;
-    for (int i = 0; i < COUNT; ++i)
-        texels.emplace_back(1.0f, 0.5f, 0.25f, float(extinctionBits(i / (COUNT - 1.0))));
-    glm::dvec4 sum(0.0);
-    for (int i = 0; i <= COUNT; ++i) {
-        texels.emplace_back(sum);
-        if (i == COUNT) break;
-        const glm::dvec4 t(texels[std::size_t(i)]);
-        sum += glm::dvec4(glm::dvec3(t) * t.a, t.a);
-    }
-    return texels;
+    return extinctionTexels(COUNT, {1.0f, 0.5f, 0.25f}, extinctionBits);
 }
 
 PeriodQuestion question(const std::vector<glm::vec4>& texels, double tolerance)

@@ -1,3 +1,5 @@
+#include "ExtinctionTexels.h"
+
 #include <osgVolumizer/core/accuracy/RaySamples.h>
 
 #include <glm/geometric.hpp>
@@ -18,16 +20,8 @@ constexpr int COUNT = 1 << 18; // so many entries that the nearest one is exact 
 struct Table
 {
     Table(const glm::vec3& color, const std::function<double(double)>& extinctionBits)
+        : texels(extinctionTexels(COUNT, color, extinctionBits))
     {
-        for (int i = 0; i < COUNT; ++i)
-            texels.emplace_back(color, float(extinctionBits(i / (COUNT - 1.0))));
-        glm::dvec4 sum(0.0);
-        for (int i = 0; i <= COUNT; ++i) {
-            texels.emplace_back(sum);
-            if (i == COUNT) break;
-            const glm::dvec4 t(texels[std::size_t(i)]);
-            sum += glm::dvec4(glm::dvec3(t) * t.a, t.a);
-        }
     }
     ExtinctionTable midpoints() const { return {texels.data(), COUNT, false}; }
     ExtinctionTable integrals() const { return {texels.data(), COUNT, true}; }
