@@ -158,7 +158,8 @@ MergedGroup::meshOf(const MergedVolume& volume,
 }
 
 void MergedGroup::addVolume(const MergedVolume& volume, std::shared_ptr<const VolumeMesh> mesh,
-                            VolumePart part, double depth, LeafList& leaves) const
+                            std::shared_ptr<const VolumePart> part, double depth,
+                            LeafList& leaves) const
 {
     if (mesh->batches.empty()) return;
     const VolumeInstance& instance = *volume.instance;
@@ -166,12 +167,12 @@ void MergedGroup::addVolume(const MergedVolume& volume, std::shared_ptr<const Vo
     _frame.counts.polygons += static_cast<double>(mesh->indexArray().size() / 3);
     ++_frame.counts.volumeLeaves;
     osgUtil::StateGraph* graph = instance.leaf->_parent;
-    const osg::ref_ptr<osg::StateSet> set = volumeStateSet(part.features);
+    const osg::ref_ptr<osg::StateSet> set = volumeStateSet(part->features);
     if (graph->getStateSet() != set) graph = graph->_parent->find_or_insert(set);
-    if (!part.above.depthTest.isUsual() && part.features.slotCount == 0)
-        graph = graph->find_or_insert(depthTestStateSet(part.above.depthTest));
+    if (!part->above.depthTest.isUsual() && part->features.slotCount == 0)
+        graph = graph->find_or_insert(depthTestStateSet(part->above.depthTest));
     osg::ref_ptr<VolumeDrawable> drawable = new VolumeDrawable;
-    drawable->set(std::move(mesh), std::make_shared<const VolumePart>(std::move(part)));
+    drawable->set(std::move(mesh), std::move(part));
     osg::ref_ptr<osgUtil::RenderLeaf> leaf = new osgUtil::RenderLeaf(
         drawable, instance.leaf->_projection, instance.leaf->_modelview, static_cast<float>(depth));
     graph->addLeaf(leaf);

@@ -79,7 +79,7 @@ public:
     meshOf(const MergedVolume& volume, const std::vector<core::DepthInterval>& farToNear) const;
     /// Adds a leaf that draws a part of a volume; none for a mesh without faces.
     void addVolume(const MergedVolume& volume, std::shared_ptr<const VolumeMesh> mesh,
-                   VolumePart part, double depth, LeafList& leaves) const;
+                   std::shared_ptr<const VolumePart> part, double depth, LeafList& leaves) const;
     /// Adds a leaf of the renderer's own, beside those of the first volume.
     void addStep(osg::Drawable* drawable, osg::StateSet* state, double depth,
                  LeafList& leaves) const;

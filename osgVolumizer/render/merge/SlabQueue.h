@@ -14,8 +14,10 @@ namespace render {
 class SlabQueue
 {
 public:
-    /// \param parts what is drawn of each of the group's volumes
-    SlabQueue(const MergedGroup& group, const std::vector<VolumePart>& parts, LeafList& leaves)
+    /// What is drawn of each of the group's volumes.
+    using Parts = std::vector<std::shared_ptr<const VolumePart>>;
+
+    SlabQueue(const MergedGroup& group, const Parts& parts, LeafList& leaves)
         : _group(group), _parts(parts), _leaves(leaves)
     {
     }
@@ -30,7 +32,7 @@ public:
 
 private:
     const MergedGroup& _group;
-    const std::vector<VolumePart>& _parts;
+    const Parts& _parts;
     LeafList& _leaves;
     std::vector<core::DepthInterval> _intervals; ///< of _volume
     std::size_t _volume = 0;

@@ -1,13 +1,10 @@
 #include "CaptureLeaf.h"
 
-#include "../../context/ContextRefusals.h"
 #include "../../context/ForeignState.h"
 #include "../../context/ProgramInterface.h"
-#include "../../context/ReportOnce.h"
 #include "../../context/ScreenPass.h"
 #include "../../context/SharedStateSets.h"
 #include "../../context/Uniforms.h"
-#include "../../draw/VolumeProgram.h"
 
 #include <osg/Depth>
 #include <osg/Stencil>
@@ -87,12 +84,8 @@ std::uint64_t key(SharedState first, int number)
 } // namespace
 
 CaptureLeaf::CaptureLeaf(Accumulation* accumulation, const Settings& settings)
-    : _accumulation(accumulation), _settings(settings)
+    : SortingLeaf(accumulation, settings.area), _settings(settings)
 {
-    setSupportsDisplayList(false);
-    setUseDisplayList(false);
-    setUseVertexBufferObjects(false);
-    setDataVariance(osg::Object::STATIC);
 }
 
 osg::Object* CaptureLeaf::cloneType() const
@@ -124,23 +117,6 @@ osg::ref_ptr<osg::StateSet> CaptureLeaf::stateSet(const Settings& settings)
     return clearState();
 }
 
-// In the frame that finds that the card has no memory for slots, surfaces are drawn after the
-// volume.
-void CaptureLeaf::drawWithout(osg::State& state) const
-{
-    reportOnce({ErrorCode::NOT_SUPPORTED,
-                "the card has no memory for captured surfaces; those in volumes are sorted rank "
-                "by rank, which takes longer"});
-    refuse(state.getContextID(), Refusal::CAPTURED_SURFACES);
-    contextResources(state)->part<AccumulationBuffers>().sortedSurfaces[0] = nullptr;
-    const bool begins = _settings.step == BEGIN_SLOT ||
-                        (_settings.step == BEGIN_REST && !_accumulation->hasPlainTarget());
-    if (begins)
-        glEnable(GL_RASTERIZER_DISCARD);
-    else
-        glDisable(GL_RASTERIZER_DISCARD);
-}
-
 CaptureBuffers* CaptureLeaf::buffersIn(osg::State& state) const
 {
     ContextResources& resources = *contextResources(state);
@@ -158,7 +134,11 @@ void CaptureLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
     osg::State& state = *renderInfo.getState();
     const CaptureBuffers* buffers = buffersIn(state);
     if (!buffers) {
-        drawWithout(state);
+        drawWithout(state, Refusal::CAPTURED_SURFACES,
+                    "the card has no memory for captured surfaces; those in volumes are sorted "
+                    "rank by rank, which takes longer",
+                    _settings.step == BEGIN_SLOT ||
+                        (_settings.step == BEGIN_REST && !_accumulation->hasPlainTarget()));
         return;
     }
     draw(state, *buffers);
@@ -176,7 +156,7 @@ void CaptureLeaf::draw(osg::State& state, const CaptureBuffers& buffers) const
     switch (_settings.step) {
     case BEGIN_SLOT:
         bindFramebuffer(state, buffers.framebuffers[slot]);
-        clearArea(_settings.area, GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+        clearArea(_area, GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
         if (_settings.conditional)
             gl.glBeginConditionalRender(buffers.queries[slot - 1], WAIT_FOR_QUERY);
         gl.glBeginQuery(GL_SAMPLES_PASSED_ARB, buffers.queries[slot]);
@@ -190,14 +170,14 @@ void CaptureLeaf::draw(osg::State& state, const CaptureBuffers& buffers) const
         break;
     case WRITE_DEPTH:
         state.applyTextureAttribute(UNIT_SORTED_FAR, buffers.sorted);
-        drawScreen(state, resources, _settings.area);
+        drawScreen(state, resources, _area);
         break;
     case BEGIN_REST:
         gl.glBeginConditionalRender(buffers.queries[slot], WAIT_FOR_QUERY);
         bindFramebuffer(state, buffers.restFramebuffer);
-        clearArea(_settings.area, GL_STENCIL_BUFFER_BIT);
+        clearArea(_area, GL_STENCIL_BUFFER_BIT);
         state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, target.opaqueDepth);
-        drawScreen(state, resources, _settings.area);
+        drawScreen(state, resources, _area);
         break;
     case END_REST:
         gl.glEndConditionalRender();
@@ -214,7 +194,7 @@ void CaptureLeaf::sort(osg::State& state, const CaptureBuffers& buffers) const
     bindFramebuffer(state, buffers.sortedFramebuffer);
     state.applyTextureAttribute(UNIT_FIRST_CAPTURED, buffers.depths);
     state.applyTextureAttribute(UNIT_OPAQUE_DEPTH, target.opaqueDepth);
-    drawScreen(state, resources, _settings.area);
+    drawScreen(state, resources, _area);
     target.sortedSurfaces[0] = buffers.sorted;
     target.sortedSurfaces[1] = buffers.colors;
     _accumulation->bindTarget(state);

@@ -1,9 +1,8 @@
 #pragma once
 
-#include "../../draw/Accumulation.h"
+#include "../SortingLeaf.h"
 #include "CaptureBuffers.h"
 
-#include <osg/Drawable>
 #include <osg/StateSet>
 
 #include <glm/vec4.hpp>
@@ -20,7 +19,7 @@ namespace render {
 /// full-screen pass sorts each pixel's fragments by a network (Batcher, "Sorting networks and their
 /// applications", AFIPS 1968). So their shaders are left alone, but their blending has to be one
 /// that is known: see blendingOf(). Fragments of a pixel beyond its set's last slot are drawn last.
-class CaptureLeaf : public osg::Drawable
+class CaptureLeaf : public SortingLeaf
 {
 public:
     static constexpr int MAXIMUM_SLOTS = CaptureBuffers::MAXIMUM_SLOTS;
@@ -46,8 +45,6 @@ public:
 
     CaptureLeaf(Accumulation* accumulation, const Settings& settings);
     osg::Object* cloneType() const override;
-    osg::Object* clone(const osg::CopyOp&) const override { return cloneType(); }
-    const char* libraryName() const override { return "osgVolumizer"; }
     const char* className() const override { return "CaptureLeaf"; }
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
 
@@ -56,11 +53,9 @@ public:
 
 private:
     CaptureBuffers* buffersIn(osg::State& state) const;
-    void drawWithout(osg::State& state) const;
     void draw(osg::State& state, const CaptureBuffers& buffers) const;
     void sort(osg::State& state, const CaptureBuffers& buffers) const;
 
-    osg::ref_ptr<Accumulation> _accumulation;
     Settings _settings;
 };
 

@@ -111,7 +111,8 @@ void CapturedSurfaces::addVolume(LeafList& leaves) const
     const Blending blending = blendingOf(_group.surfaces()[_region.surfaces.front()].graph());
     part.surfaceWeights = {blending.colorWeighted ? 1.0f : 0.0f,
                            blending.alphaWeighted ? 1.0f : 0.0f};
-    _group.addVolume(volume, screenMesh(*volume.instance), std::move(part), _group.depth(), leaves);
+    _group.addVolume(volume, screenMesh(*volume.instance),
+                     std::make_shared<const VolumePart>(std::move(part)), _group.depth(), leaves);
 }
 
 void CapturedSurfaces::addRest(const CaptureSet& set, LeafList& leaves) const

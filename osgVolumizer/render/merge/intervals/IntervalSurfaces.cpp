@@ -1,7 +1,6 @@
 #include "IntervalSurfaces.h"
 
 #include "../../draw/AccumulationLeaf.h"
-#include "../SlabQueue.h"
 
 #include <algorithm>
 #include <limits>
@@ -19,12 +18,12 @@ IntervalSurfaces::IntervalSurfaces(const MergedGroup& group, const MergeRegion& 
     : _group(group), _region(region), _intervals(scheduleOf(group, region.surfaces))
 {
     for (const MergedVolume& volume : group.volumes()) {
-        _whole.push_back(group.partIn(region, volume));
-        for (std::vector<VolumePart>* parts : {&_behind, &_inFront}) {
-            parts->push_back(_whole.back());
-            parts->back().features.splitDepth = true;
-            parts->back().inFrontOfSplit = parts == &_inFront;
-        }
+        VolumePart part = group.partIn(region, volume);
+        _whole.push_back(std::make_shared<const VolumePart>(part));
+        part.features.splitDepth = true;
+        _behind.push_back(std::make_shared<const VolumePart>(part));
+        part.inFrontOfSplit = true;
+        _inFront.push_back(std::make_shared<const VolumePart>(std::move(part)));
     }
     for (std::size_t i = 0; i < region.surfaces.size(); ++i)
         _pieces.push_back(piecesOf(i));

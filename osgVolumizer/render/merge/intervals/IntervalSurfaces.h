@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../MergedGroup.h"
+#include "../SlabQueue.h"
 
 #include <glm/vec4.hpp>
 
@@ -34,7 +34,7 @@ private:
 
     const MergedGroup& _group;
     const MergeRegion& _region;
-    std::vector<VolumePart> _whole, _behind, _inFront; ///< per volume; of surfaces in an interval
+    SlabQueue::Parts _whole, _behind, _inFront; ///< per volume; of surfaces in an interval
     std::vector<core::ScheduledInterval> _intervals;
     std::vector<Pieces> _pieces; ///< per surface of the region
 };

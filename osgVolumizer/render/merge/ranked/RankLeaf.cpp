@@ -1,13 +1,10 @@
 #include "RankLeaf.h"
 
-#include "../../context/ContextRefusals.h"
 #include "../../context/ForeignState.h"
 #include "../../context/ProgramInterface.h"
-#include "../../context/ReportOnce.h"
 #include "../../context/ScreenPass.h"
 #include "../../context/SharedStateSets.h"
 #include "../../context/Uniforms.h"
-#include "../../draw/VolumeProgram.h"
 
 #include <osg/ColorMask>
 #include <osg/Depth>
@@ -37,12 +34,8 @@ osg::ref_ptr<osg::StateSet> rankScreenState(const char* fragment, bool writeDept
 } // namespace
 
 RankLeaf::RankLeaf(Accumulation* accumulation, Step step, int index, const glm::ivec4& area)
-    : _accumulation(accumulation), _step(step), _index(index), _area(area)
+    : SortingLeaf(accumulation, area), _step(step), _index(index)
 {
-    setSupportsDisplayList(false);
-    setUseDisplayList(false);
-    setUseVertexBufferObjects(false);
-    setDataVariance(osg::Object::STATIC);
 }
 
 osg::Object* RankLeaf::cloneType() const
@@ -61,22 +54,6 @@ osg::ref_ptr<osg::StateSet> RankLeaf::stateSet(Step step)
     return clearState();
 }
 
-// In the frame that finds that the card has no memory for ranks, surfaces are drawn after the
-// volumes.
-void RankLeaf::drawWithout(osg::State& state) const
-{
-    reportOnce({ErrorCode::NOT_SUPPORTED, "the card has no memory for ranks of surfaces; those "
-                                          "in volumes are sorted by intervals of depth"});
-    refuse(state.getContextID(), Refusal::RANKED_SURFACES);
-    contextResources(state)->part<AccumulationBuffers>().sortedSurfaces[0] = nullptr;
-    const bool begins = _step == BEGIN_DEPTHS || _step == BEGIN_RANK ||
-                        (_step == BEGIN_REST && !_accumulation->hasPlainTarget());
-    if (begins)
-        glEnable(GL_RASTERIZER_DISCARD);
-    else
-        glDisable(GL_RASTERIZER_DISCARD);
-}
-
 RankBuffers* RankLeaf::buffersIn(osg::State& state) const
 {
     ContextResources& resources = *contextResources(state);
@@ -93,7 +70,11 @@ void RankLeaf::drawImplementation(osg::RenderInfo& renderInfo) const
     osg::State& state = *renderInfo.getState();
     const RankBuffers* buffers = buffersIn(state);
     if (!buffers) {
-        drawWithout(state);
+        drawWithout(state, Refusal::RANKED_SURFACES,
+                    "the card has no memory for ranks of surfaces; those in volumes are sorted by "
+                    "intervals of depth",
+                    _step == BEGIN_DEPTHS || _step == BEGIN_RANK ||
+                        (_step == BEGIN_REST && !_accumulation->hasPlainTarget()));
         return;
     }
     draw(state, *buffers);

@@ -1,9 +1,8 @@
 #pragma once
 
-#include "../../draw/Accumulation.h"
+#include "../SortingLeaf.h"
 #include "RankBuffers.h"
 
-#include <osg/Drawable>
 #include <osg/StateSet>
 
 #include <glm/vec4.hpp>
@@ -21,7 +20,7 @@ namespace render {
 /// Passes that no pixel needs are skipped by the GPU (conditional rendering on the
 /// occlusion query of its pass). Fragments beyond the K-th of a pixel are drawn last, in the order
 /// that they come.
-class RankLeaf : public osg::Drawable
+class RankLeaf : public SortingLeaf
 {
 public:
     static constexpr int RANK_COUNT = RankBuffers::COUNT;
@@ -41,8 +40,6 @@ public:
 
     RankLeaf(Accumulation* accumulation, Step step, int index, const glm::ivec4& area);
     osg::Object* cloneType() const override;
-    osg::Object* clone(const osg::CopyOp&) const override { return cloneType(); }
-    const char* libraryName() const override { return "osgVolumizer"; }
     const char* className() const override { return "RankLeaf"; }
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
 
@@ -51,15 +48,12 @@ public:
 
 private:
     RankBuffers* buffersIn(osg::State& state) const;
-    void drawWithout(osg::State& state) const;
     void draw(osg::State& state, const RankBuffers& buffers) const;
     void sort(osg::State& state, const RankBuffers& buffers) const;
     void fill(osg::State& state, const RankBuffers& buffers) const;
 
-    osg::ref_ptr<Accumulation> _accumulation;
     Step _step;
     int _index;
-    glm::ivec4 _area; ///< window rectangle: x, y, width, height
 };
 
 /// How surfaces are drawn in a step that begins with them.

@@ -67,11 +67,12 @@ void RankedSurfaces::compose(LeafList& leaves) const
 void RankedSurfaces::addSegment(const std::vector<core::ScheduledInterval>& intervals, int rank,
                                 LeafList& leaves) const
 {
-    std::vector<VolumePart> parts;
+    SlabQueue::Parts parts;
     for (const MergedVolume& volume : _group.volumes()) {
-        parts.push_back(_group.partIn(_region, volume));
-        parts.back().features.ranked = true;
-        parts.back().rank = rank;
+        VolumePart part = _group.partIn(_region, volume);
+        part.features.ranked = true;
+        part.rank = rank;
+        parts.push_back(std::make_shared<const VolumePart>(std::move(part)));
     }
     LeafList segments;
     {
