@@ -100,6 +100,7 @@ const std::map<std::string, Handler>& handlers()
         {"--output", [](Arguments& a, Words& w) { a.output = w.text(); }},
         {"--stats", [](Arguments& a, Words& w) { a.stats = w.text(); }},
         {"--frames", [](Arguments& a, Words& w) { a.frames = w.integer(1, 1000000); }},
+        {"--turn", [](Arguments& a, Words& w) { a.turnDegrees = w.number(-360.0, 360.0); }},
         {"-O", [](Arguments& a, Words& w) { a.readerOptions = w.text(); }},
         {"--help", [](Arguments& a, Words&) { a.help = true; }},
     };
@@ -155,6 +156,8 @@ Renders a scene without a window and writes the picture, the statistics, or both
                         with straight alpha
   --stats FILE          JSON: milliseconds per frame (glFinish inside) and the volumes' counters
   --frames N            frames to time, after one that is not (1)
+  --turn DEGREES        the viewer goes round the scene by so much from frame to frame, and is back
+                        for the picture (0)
   --size W H            pixels (512 512)
   --eye X Y Z           where the viewer is; without it, the whole scene is shown
   --center X Y Z        what is looked at (the scene's centre)

@@ -23,6 +23,7 @@ struct Arguments
     std::string output;
     std::string stats;
     int frames = 1;
+    double turnDegrees = 0.0; ///< from frame to frame
     bool help = false;
 };
 

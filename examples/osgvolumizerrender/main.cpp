@@ -60,6 +60,27 @@ support::RenderOptions viewOf(const Arguments& arguments, const osg::BoundingSph
     return options;
 }
 
+/// Goes round the scene, frame by frame; the view is back in the end.
+void turn(support::SceneRenderer& renderer, const Arguments& arguments,
+          const osg::BoundingSphere& bound, Statistics& statistics)
+{
+    const osg::Matrixd view = renderer.options().view;
+    const osg::Vec3d center = arguments.center.value_or(osg::Vec3d(bound.center()));
+    const osg::Vec3d up = arguments.up.value_or(osg::Vec3d(0.0, 0.0, 1.0));
+    for (int i = 1; i <= arguments.frames && renderer.status().ok(); ++i) {
+        const double angle = osg::DegreesToRadians(i * arguments.turnDegrees);
+        renderer.options().view = osg::Matrixd::translate(-center) *
+                                  osg::Matrixd::rotate(angle, up) *
+                                  osg::Matrixd::translate(center) * view;
+        renderer.render();
+        for (const double ms : renderer.milliseconds())
+            statistics.milliseconds.push_back(ms);
+        statistics.latestFrame = renderer.counters();
+    }
+    renderer.options().view = view;
+    renderer.render(); // at rest, a view is exact from its second frame on
+}
+
 Status run(const Arguments& arguments)
 {
     osg::ref_ptr<osgDB::Options> readerOptions = new osgDB::Options(arguments.readerOptions);
@@ -85,11 +106,16 @@ Status run(const Arguments& arguments)
     Statistics statistics;
     renderer.render();
     statistics.firstFrame = renderer.counters();
-    renderer.options().frames = static_cast<unsigned>(arguments.frames);
+    if (arguments.turnDegrees != 0.0)
+        turn(renderer, arguments, scene->getBound(), statistics);
+    else
+        renderer.options().frames = static_cast<unsigned>(arguments.frames);
     const support::FloatImage image = renderer.render();
     if (!renderer.status().ok()) return renderer.status();
-    statistics.milliseconds = renderer.milliseconds();
-    statistics.latestFrame = renderer.counters();
+    if (arguments.turnDegrees == 0.0) {
+        statistics.milliseconds = renderer.milliseconds();
+        statistics.latestFrame = renderer.counters();
+    }
 
     Status status;
     if (!arguments.output.empty()) status = support::writePicture(image, arguments.output);

@@ -183,7 +183,7 @@ TEST_F(Tolerance, MovingViewsAreCoarserOnly)
     for (int i = 1; i < 20; ++i) {
         renderer.options().lookAt({95, -60.0 + i, 70}, {23, 23, 23}, {0, 0, 1});
         const double after = voxelsPerSample();
-        EXPECT_LE(after, 2.1 * before); // little by little
+        EXPECT_LE(after, 2.6 * before); // little by little; the first step is the longest
         before = after;
     }
     EXPECT_GT(before, 8.0);

@@ -89,10 +89,13 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
     if (appearance.getTargetFrameTime() > 0.0 && visitor.getFrameStamp()) {
         const double now = osg::Timer::instance()->time_s();
         const osg::Matrixd toClip = *volume.frameToEye * *visitor.getProjectionMatrix();
-        volume.sampling.periodVoxel *=
+        const double reduction =
             renderData<AppearanceData>(appearance)
-                ->frameTimes.stretch(volume.viewId, visitor.getFrameStamp()->getFrameNumber(),
-                                     toClip, now, appearance.getTargetFrameTime());
+                ->frameTimes.reduction(volume.viewId, visitor.getFrameStamp()->getFrameNumber(),
+                                       toClip, now, appearance.getTargetFrameTime());
+        const ReducedSampling reduced = reducedSampling(reduction);
+        volume.rayDistance = reduced.rayDistance;
+        volume.sampling.periodVoxel *= reduced.stretch;
     }
     return choice.table;
 }

@@ -6,28 +6,41 @@
 namespace osgVolumizer {
 namespace render {
 
-double FrameTimes::stretch(std::uint64_t view, unsigned frame, const osg::Matrixd& toClip,
-                           double now, double target)
+double FrameTimes::reduction(std::uint64_t view, unsigned frame, const osg::Matrixd& toClip,
+                             double now, double target)
 {
     std::lock_guard<std::mutex> lock(_mutex);
     if (_views.size() >= CAPACITY && !_views.count(view)) _views.clear();
     View& v = _views[view];
-    if (v.frame == frame && frame != 0) return v.moved ? v.stretch : 1.0; // another eye's turn
+    if (v.frame == frame && frame != 0) return v.moved ? v.reduction : 1.0; // another eye's turn
     const bool consecutive = v.frame + 1 == frame;
-    // What the last frame took, if it was drawn with this stretch.
+    if (consecutive && !v.moved && now > v.time) v.atRest = std::min(v.atRest, now - v.time);
+    // What the last frame took, if it was drawn with this reduction.
     if (consecutive && v.moved && now > v.time && target > 0.0) {
         const double late = (now - v.time) / target;
         // Part of a frame does not depend on samples: less than all of the change at once. On time
         // it is tried whether there is some left, which a display that waits for its next refresh
         // does not tell.
         const double change = late > 1.0 ? std::pow(late, 0.7) : 0.97 * std::pow(late, 0.3);
-        v.stretch = std::clamp(v.stretch * std::clamp(change, 1.0 / 1.5, 2.0), 1.0, LARGEST);
+        v.reduction = std::clamp(v.reduction * std::clamp(change, 1.0 / 1.5, 2.0), 1.0, LARGEST);
     }
-    v.moved = consecutive && v.toClip != toClip;
+    const bool moves = consecutive && v.toClip != toClip;
+    if (moves && !v.moved && target > 0.0 && v.atRest < NEVER)
+        v.reduction = std::max(v.reduction, std::clamp(v.atRest / target, 1.0, LARGEST_AT_FIRST));
+    if (v.moved || !consecutive) v.atRest = NEVER;
+    v.moved = moves;
     v.frame = frame;
     v.toClip = toClip;
     v.time = now;
-    return v.moved ? v.stretch : 1.0;
+    return v.moved ? v.reduction : 1.0;
+}
+
+ReducedSampling reducedSampling(double reduction)
+{
+    constexpr double SMALL = 1.5, WIDEST = 4.0;
+    if (reduction < SMALL) return {1.0, reduction};
+    const double distance = std::min(std::cbrt(reduction), WIDEST);
+    return {distance, reduction / (distance * distance)};
 }
 
 } // namespace render

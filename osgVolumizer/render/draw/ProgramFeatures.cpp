@@ -36,6 +36,7 @@ constexpr Flag FLAGS[] = {
     {&ProgramFlags::gradientTexture, "GRADIENT_TEXTURE"},
     {&ProgramFlags::skipping, "SKIPPING"},
     {&ProgramFlags::countSamples, "COUNT_SAMPLES"},
+    {&ProgramFlags::coarse, "COARSE"},
 };
 // A flag without a row would be missing in the key, and programs would be taken for one another.
 static_assert(sizeof(ProgramFlags) == sizeof(bool) * std::size(FLAGS), "a row for each flag");

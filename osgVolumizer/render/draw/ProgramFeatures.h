@@ -31,6 +31,7 @@ struct ProgramFlags
     bool gradientTexture = false; ///< brick textures hold gradients besides values
     bool skipping = false;        ///< leap over cells that show nothing
     bool countSamples = false;    ///< draw the number of samples: see ViewHooks
+    bool coarse = false;          ///< fewer rays than pixels: see CoarseImage
 };
 
 /// What a volume's shader has to do; nothing that is not asked for is compiled in.

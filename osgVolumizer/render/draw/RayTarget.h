@@ -1,5 +1,6 @@
 #pragma once
 
+#include "TargetScope.h"
 #include "VolumeDrawable.h"
 
 #include <osg/RenderInfo>
@@ -18,7 +19,6 @@ class RayTarget
 public:
     RayTarget(osg::State& state, ContextResources& resources, const ProgramFeatures& features,
               const glm::ivec4& viewport);
-    ~RayTarget();
     RayTarget(const RayTarget&) = delete;
     RayTarget& operator=(const RayTarget&) = delete;
 
@@ -32,11 +32,7 @@ private:
     ContextResources& _resources;
     const ProgramFeatures& _features;
     glm::ivec4 _viewport;
-    const osg::StateAttribute* _program;
-    GLint _drawFramebuffer = 0, _readFramebuffer = 0;
-    GLint _equation[2] = {}, _function[4] = {};
-    GLboolean _blend, _depthTest;
-    GLboolean _colorMask[4] = {GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE};
+    TargetScope _scope;
     bool _made = false;
 };
 

@@ -10,6 +10,7 @@
 #include "../context/Statistics.h"
 #include "BatchDrawing.h"
 #include "BoundMesh.h"
+#include "CoarseImage.h"
 #include "RayTarget.h"
 #include "SubstituteProgram.h"
 #include "VolumeUniforms.h"
@@ -30,33 +31,50 @@ glm::dvec4 currentViewport()
     return {v[0], v[1], v[2], v[3]};
 }
 
-void drawMesh(osg::RenderInfo& renderInfo, ContextResources& resources, const Uniforms& uniforms,
-              const core::View& view, const VolumeMesh& mesh, const VolumePart& part)
+void drawBatches(const BatchDrawing& drawing, const VolumeMesh& mesh)
 {
-    osg::State& state = *renderInfo.getState();
+    for (const BrickBatch& batch : mesh.batches)
+        drawBatch(drawing, batch);
+}
+
+void drawRectangles(const BatchDrawing& drawing, ContextResources& resources,
+                    const VolumeMesh& mesh, const VolumePart& part)
+{
+    const BoundMesh bound(*drawing.renderInfo.getState(), resources, mesh,
+                          static_cast<float>(part.step));
+    if (part.scissors.empty()) return drawBatches(drawing, mesh);
+    const ScissorScope scissor;
+    for (const glm::ivec4& rectangle : part.scissors)
+        if (scissor.set(rectangle)) drawBatches(drawing, mesh);
+}
+
+// Gathered values hide nothing, so they need no order, and no parts.
+void gather(const BatchDrawing& drawing, ContextResources& resources, const VolumeMesh& mesh,
+            const VolumePart& part)
+{
     const osg::Depth::Function test = part.above.depthTest.function;
-    if (part.features.gathers() && (test == osg::Depth::NEVER || test == osg::Depth::EQUAL)) return;
-    // Gathered values hide nothing, so they need no order, and no parts.
-    std::optional<RayTarget> target;
-    if (part.features.gathers())
-        target.emplace(state, resources, part.features, glm::ivec4(currentViewport()));
-    if (target && !target->made()) return;
-    {
-        const BoundMesh bound(state, resources, mesh, static_cast<float>(part.step));
-        const BatchDrawing drawing{renderInfo, resources.limits, uniforms, part.features, view};
-        const auto drawBatches = [&]() {
-            for (const BrickBatch& batch : mesh.batches)
-                drawBatch(drawing, batch);
-        };
-        if (part.scissors.empty()) {
-            drawBatches();
-        } else {
-            const ScissorScope scissor;
-            for (const glm::ivec4& rectangle : part.scissors)
-                if (scissor.set(rectangle)) drawBatches();
+    if (test == osg::Depth::NEVER || test == osg::Depth::EQUAL) return;
+    RayTarget target(*drawing.renderInfo.getState(), resources, part.features,
+                     glm::ivec4(currentViewport()));
+    if (!target.made()) return;
+    drawRectangles(drawing, resources, mesh, part);
+    target.resolve(*part.look);
+}
+
+void drawCoarse(CoarseImage& image, const glm::ivec4& viewport, const BatchDrawing& drawing,
+                ContextResources& resources, const VolumeMesh& mesh, const VolumePart& part)
+{
+    std::vector<glm::ivec4> rectangles = part.scissors;
+    if (rectangles.empty()) rectangles.push_back(viewport);
+    for (const glm::ivec4& rectangle : rectangles) {
+        if (!image.begin(drawing.uniforms, rectangle)) continue;
+        {
+            const BoundMesh bound(*drawing.renderInfo.getState(), resources, mesh,
+                                  static_cast<float>(part.step));
+            drawBatches(drawing, mesh);
         }
+        image.end();
     }
-    if (target) target->resolve(*part.look);
 }
 
 } // namespace
@@ -83,8 +101,13 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     const auto* program = state.getLastAppliedProgramObject();
     if (!substitute.isDrawn(*_part) || !program) return;
     const core::View view{toGlm(state.getModelViewMatrix()), toGlm(state.getProjectionMatrix())};
-    const Result<PixelRays> rays = pixelRays(view.toEye, _part->above.toUsualClip * view.projection,
-                                             currentViewport(), look.referenceDepth, look.center);
+    const glm::dvec4 viewport = currentViewport();
+    std::optional<CoarseImage> image;
+    if (_part->features.coarse) image.emplace(state, *resources, viewport, _part->rayDistance);
+    if (image && !image->made()) image.reset();
+    const Result<PixelRays> rays =
+        pixelRays(view.toEye, _part->above.toUsualClip * view.projection,
+                  image ? image->viewport() : viewport, look.referenceDepth, look.center);
     if (!rays) {
         reportError(rays.status);
         return;
@@ -100,7 +123,14 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     if (look.table.texture && !applyTable(state, look.table.texture.get(), UNIT_TABLE)) return;
     if (_part->paints)
         setPaints(renderInfo, resources->limits, uniforms, *_part->paints, UNIT_FIRST_PAINT);
-    drawMesh(renderInfo, *resources, uniforms, view, *_mesh, *_part);
+    const BatchDrawing drawing{renderInfo, resources->limits, uniforms, _part->features, view};
+    if (_part->features.coarse) setOneRayPerPixel(uniforms, viewport);
+    if (image)
+        drawCoarse(*image, glm::ivec4(viewport), drawing, *resources, *_mesh, *_part);
+    else if (_part->features.gathers())
+        gather(drawing, *resources, *_mesh, *_part);
+    else
+        drawRectangles(drawing, *resources, *_mesh, *_part);
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
     reapplyInNextFrame(state);

@@ -20,6 +20,7 @@ struct VolumePart
     std::shared_ptr<const std::vector<Paint>> paints; ///< null for none
     StateAbove above;
     ProgramFeatures features;         ///< the look's, and what this part needs besides
+    double rayDistance = 1.0;         ///< pixels between rays: see CoarseImage
     double step = 1.0;                ///< between samples or slices: depth, distance or frame units
     std::vector<glm::ivec4> scissors; ///< window rectangles to draw in; none: everywhere
     glm::dvec3 surfaceNormal{0.0};    ///< slices: frame units; along which `step` is counted

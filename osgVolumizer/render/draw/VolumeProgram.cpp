@@ -84,9 +84,10 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
     // What surfaces leave in the target's alpha need not be what they take of the light behind.
     constexpr GLenum SOURCE1_COLOR = 0x88F9;
     const bool captured = features.slotCount > 0;
+    const bool twoOutputs = captured && !features.coarse;
     set->setAttributeAndModes(
         new osg::BlendFunc(osg::BlendFunc::ONE,
-                           captured ? SOURCE1_COLOR : GLenum(GL_ONE_MINUS_SRC_ALPHA)),
+                           twoOutputs ? SOURCE1_COLOR : GLenum(GL_ONE_MINUS_SRC_ALPHA)),
         KEPT);
     set->setAttribute(new osg::BlendEquation(osg::BlendEquation::FUNC_ADD), KEPT);
     set->setAttributeAndModes(
@@ -124,6 +125,15 @@ osg::ref_ptr<osg::StateSet> depthTestStateSet(const DepthTest& test)
     set->setAttributeAndModes(new osg::Depth(test.function, test.zNear, test.zFar, false),
                               StateAttribute::ON | StateAttribute::PROTECTED);
     return set;
+}
+
+osg::ref_ptr<osg::Program> makeFillProgram()
+{
+    osg::ref_ptr<osg::Program> result = new osg::Program;
+    result->setName("osgVolumizer fill");
+    result->addShader(makeShader(osg::Shader::VERTEX, VERSION, shaderSource("screen.vert.glsl")));
+    result->addShader(makeShader(osg::Shader::FRAGMENT, VERSION, shaderSource("fill.frag.glsl")));
+    return result;
 }
 
 osg::ref_ptr<osg::Program> makeResolveProgram(VolumeAppearance::RayFunction function, bool rgba)

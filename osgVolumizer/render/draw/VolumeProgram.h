@@ -17,6 +17,8 @@ osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features);
 osg::ref_ptr<osg::StateSet> depthTestStateSet(const DepthTest& test);
 /// Draws what a ray function gathered, of values or of colours, at once.
 osg::ref_ptr<osg::Program> makeResolveProgram(VolumeAppearance::RayFunction function, bool rgba);
+/// Fills the pixels of a coarse image: see CoarseImage.
+osg::ref_ptr<osg::Program> makeFillProgram();
 
 } // namespace render
 } // namespace osgVolumizer

@@ -147,6 +147,15 @@ VolumePart MergedGroup::partIn(const MergeRegion& region, const MergedVolume& vo
     return part;
 }
 
+VolumePart MergedGroup::wholeIn(const MergeRegion& region, const MergedVolume& volume) const
+{
+    VolumePart part = partIn(region, volume);
+    part.rayDistance = volume.instance->rayDistance;
+    part.features.coarse = part.rayDistance > 1.0 && part.features.slab &&
+                           !part.features.gathers() && !part.features.countSamples;
+    return part;
+}
+
 std::shared_ptr<const VolumeMesh>
 MergedGroup::meshOf(const MergedVolume& volume,
                     const std::vector<core::DepthInterval>& farToNear) const

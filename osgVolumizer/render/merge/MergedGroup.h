@@ -74,6 +74,8 @@ public:
 
     /// All of a volume in a region.
     VolumePart partIn(const MergeRegion& region, const MergedVolume& volume) const;
+    /// The same for one leaf that draws it at once, perhaps with fewer rays than pixels.
+    VolumePart wholeIn(const MergeRegion& region, const MergedVolume& volume) const;
     /// The faces of a volume in some intervals, far to near.
     std::shared_ptr<const VolumeMesh>
     meshOf(const MergedVolume& volume, const std::vector<core::DepthInterval>& farToNear) const;

@@ -12,3 +12,15 @@ void pixelRay(out vec3 origin, out vec3 direction)
     origin = rayOrigin * window;
     direction = rayDirection * window;
 }
+
+// The pixel of the window that the ray looks at.
+#ifdef COARSE
+uniform vec4 imageToWindow; // scale, offset
+uniform vec4 windowEnds;    // first and last pixel that may be looked at
+ivec2 windowPixel()
+{
+    return ivec2(clamp(gl_FragCoord.xy * imageToWindow.xy + imageToWindow.zw, windowEnds.xy, windowEnds.zw));
+}
+#else
+ivec2 windowPixel() { return ivec2(gl_FragCoord.xy); }
+#endif

@@ -7,7 +7,7 @@
 #define OPAQUE_ENOUGH 3e-5
 
 flat in vec2 slab; // nearest and farthest depth, from the reference depth
-#ifdef SLOTS
+#if defined(SLOTS) && !defined(COARSE)
 layout(location = 0, index = 0) out vec4 fragColor;
 layout(location = 0, index = 1) out vec4 fragThrough; // what is left of the light behind
 #else
@@ -56,7 +56,7 @@ float rayAt(float windowZ)
 // Where the ray meets the opaque scene; far away where it does not. Depth ranges as of osg::Depth.
 float opaqueOnRay()
 {
-    float windowZ = texelFetch(opaqueDepth, ivec2(gl_FragCoord.xy), 0).r;
+    float windowZ = texelFetch(opaqueDepth, windowPixel(), 0).r;
     float z = (windowZ - depthRange.x) * depthRange.y;
     return z < 1.0 ? rayAt(max(z, 0.0)) : 1e30;
 }
@@ -65,7 +65,7 @@ float opaqueOnRay()
 // Where the ray meets what left its depth in a buffer; far away where nothing did.
 float depthOnRay(sampler2D depths)
 {
-    float windowZ = texelFetch(depths, ivec2(gl_FragCoord.xy), 0).r;
+    float windowZ = texelFetch(depths, windowPixel(), 0).r;
     return windowZ < 1.0 ? rayAt(windowZ) : 1e30;
 }
 #endif
@@ -74,7 +74,7 @@ float depthOnRay(sampler2D depths)
 #ifdef RANKED
 float sortedDepth(int i)
 {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    ivec2 pixel = windowPixel();
     if (i < 4) return texelFetch(sortedFar, pixel, 0)[max(i, 0)];
     return i < 8 ? texelFetch(sortedNear, pixel, 0)[i - 4] : -1.0;
 }
@@ -130,7 +130,7 @@ vec4 light(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 // The pixel's surfaces, near to far, and the volume between them.
 void compositeSurfaces(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    ivec2 pixel = windowPixel();
     float enter = max(tNear, brick.x), leave = min(tFar, brick.y);
     fragColor = vec4(0.0);
     float through = 1.0, t = enter;
@@ -151,7 +151,11 @@ void compositeSurfaces(vec3 origin, vec3 direction, float tNear, float tFar, vec
         fragColor += through * c * mix(vec2(1.0), vec2(c.a), surfaceWeights).xxxy;
         through *= 1.0 - c.a;
     }
+#ifdef COARSE
+    fragColor.a = 1.0 - through;
+#else
     fragThrough = vec4(through);
+#endif
 }
 #endif
 

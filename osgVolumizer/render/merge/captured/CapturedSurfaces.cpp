@@ -106,7 +106,7 @@ void CapturedSurfaces::addCaptures(const CaptureSet& set, LeafList& leaves) cons
 void CapturedSurfaces::addVolume(LeafList& leaves) const
 {
     const MergedVolume& volume = _group.volumes().front();
-    VolumePart part = _group.partIn(_region, volume);
+    VolumePart part = _group.wholeIn(_region, volume);
     part.features.slotCount = slotCount();
     const Blending blending = blendingOf(_group.surfaces()[_region.surfaces.front()].graph());
     part.surfaceWeights = {blending.colorWeighted ? 1.0f : 0.0f,

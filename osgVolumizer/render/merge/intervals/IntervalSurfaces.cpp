@@ -18,8 +18,10 @@ IntervalSurfaces::IntervalSurfaces(const MergedGroup& group, const MergeRegion& 
     : _group(group), _region(region), _intervals(scheduleOf(group, region.surfaces))
 {
     for (const MergedVolume& volume : group.volumes()) {
+        const bool atOnce = group.volumes().size() == 1 && region.surfaces.empty();
         VolumePart part = group.partIn(region, volume);
-        _whole.push_back(std::make_shared<const VolumePart>(part));
+        _whole.push_back(
+            std::make_shared<const VolumePart>(atOnce ? group.wholeIn(region, volume) : part));
         part.features.splitDepth = true;
         _behind.push_back(std::make_shared<const VolumePart>(part));
         part.inFrontOfSplit = true;
