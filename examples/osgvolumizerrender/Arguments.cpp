@@ -1,14 +1,17 @@
 #include "Arguments.h"
 
+#include <osgVolumizer/ReadVolume.h>
+
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <sstream>
 
 using osgVolumizer::ErrorCode;
 using osgVolumizer::Result;
 using osgVolumizer::Status;
-using osgVolumizer::VolumeAppearance;
 
 namespace {
 
@@ -66,15 +69,21 @@ struct Words
     }
 };
 
-VolumeAppearance::Technique technique(Words& words)
+/// A property of appearances, by the name of its option.
+bool takeProperty(Arguments& arguments, Words& words)
 {
-    const std::string name = words.text();
-    if (name == "slices") return VolumeAppearance::SLICES;
-    if (name == "slabs") return VolumeAppearance::SLABS;
-    if (words.status.ok() && name != "auto")
-        words.status =
-            invalid("Option --technique takes slices, slabs or auto, not '" + name + "'.");
-    return VolumeAppearance::AUTOMATIC;
+    if (words.option.compare(0, 2, "--") != 0) return false;
+    const osgVolumizer::AppearanceProperty* property =
+        osgVolumizer::findAppearanceOption(words.option.substr(2));
+    if (!property) return false;
+    const std::string text = words.text();
+    if (!words.status.ok()) return true;
+    const auto values = osgVolumizer::parseAppearanceValues(*property, text);
+    if (values.ok())
+        arguments.properties.emplace_back(property, *values);
+    else
+        words.status = invalid("Option --" + values.status.text + ".");
+    return true;
 }
 
 using Handler = std::function<void(Arguments&, Words&)>;
@@ -95,8 +104,6 @@ const std::map<std::string, Handler>& handlers()
         {"--ortho",
          [](Arguments& a, Words& w) { a.orthographicHalfHeight = w.number(tiny, huge); }},
         {"--background", [](Arguments& a, Words& w) { a.background = w.color(); }},
-        {"--period", [](Arguments& a, Words& w) { a.period = w.number(tiny, huge); }},
-        {"--technique", [](Arguments& a, Words& w) { a.technique = technique(w); }},
         {"--output", [](Arguments& a, Words& w) { a.output = w.text(); }},
         {"--stats", [](Arguments& a, Words& w) { a.stats = w.text(); }},
         {"--frames", [](Arguments& a, Words& w) { a.frames = w.integer(1, 1000000); }},
@@ -132,6 +139,8 @@ Result<Arguments> parseArguments(int argc, const char* const* argv)
         const auto handler = handlers().find(words.option);
         if (handler != handlers().end())
             handler->second(arguments, words);
+        else if (takeProperty(arguments, words))
+            ;
         else if (words.option.size() > 1 && words.option[0] == '-')
             return invalid("There is no option '" + words.option + "'; see --help.");
         else if (!arguments.scene.empty())
@@ -146,14 +155,37 @@ Result<Arguments> parseArguments(int argc, const char* const* argv)
     return arguments;
 }
 
-const char* usage()
+namespace {
+
+// As much of a text as fits into the lines of --help.
+void addRow(std::string& text, const std::string& option, const std::string& help)
 {
-    return R"(osgvolumizerrender SCENE [options]
+    constexpr std::size_t COLUMN = 24, WIDTH = 100;
+    std::string line = "  " + option;
+    line.resize(std::max(line.size() + 1, COLUMN), ' ');
+    std::istringstream words(help);
+    std::string word;
+    while (words >> word) {
+        if (line.size() + word.size() > WIDTH) {
+            text += line + "\n";
+            line.assign(COLUMN, ' ');
+        }
+        line += word + " ";
+    }
+    line.pop_back();
+    text += line + "\n";
+}
+
+} // namespace
+
+std::string usage()
+{
+    std::string text = R"(osgvolumizerrender SCENE [options]
 Renders a scene without a window and writes the picture, the statistics, or both.
 
   --output FILE         .exr (or .tif): 32-bit float RGBA, linear, premultiplied, rays through pixel
-                        centres; .png: 8 bit, for people, the bytes that osgviewer would show,
-                        with straight alpha
+                        centres; .png: 8 bit, for people, with straight alpha. Over an opaque
+                        background both have what osgviewer shows, else true coverage
   --stats FILE          JSON: milliseconds per frame (glFinish inside) and the volumes' counters
   --frames N            frames to time, after one that is not (1)
   --turn DEGREES        the viewer goes round the scene by so much from frame to frame, and is back
@@ -165,10 +197,18 @@ Renders a scene without a window and writes the picture, the statistics, or both
   --fovy DEGREES        vertical field of view (30)
   --ortho HALF_HEIGHT   parallel projection, half the picture's height in world units
   --background R G B A  premultiplied (0 0 0 0)
-  --period P            distance between samples, in voxels, for every volume
-  --technique NAME      slices, slabs or auto, for every volume
   -O STRING             options for the reader of SCENE, e.g. "spacing=1,1,1.5 table=bone.lut"
 
+What every volume of the scene gets instead of what it has:
+)";
+    for (const osgVolumizer::AppearanceProperty& property : osgVolumizer::appearanceProperties())
+        addRow(text, std::string("--") + property.option,
+               std::string(property.help) + ": " + osgVolumizer::appearanceValueText(property));
+    text += "\nIn the -O of a .volume (the above too, as name=value):\n";
+    for (const osgVolumizer::VolumeOption& option : osgVolumizer::volumeOptions())
+        if (!osgVolumizer::findAppearanceOption(option.name))
+            addRow(text, option.name + "=" + option.values, option.help);
+    return text + R"(
 Lights and optimizer as in osgviewer. Exit code 0; 1 where the scene cannot be read, rendered or
 written; 2 for a wrong command line.
 )";

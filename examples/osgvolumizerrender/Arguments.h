@@ -1,12 +1,14 @@
 #pragma once
 
-#include <osgVolumizer/VolumeAppearance.h>
+#include <osgVolumizer/AppearanceProperties.h>
 
 #include <osg/Vec3d>
 #include <osg/Vec4>
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 /// What the command line asks for.
 struct Arguments
@@ -18,8 +20,10 @@ struct Arguments
     std::optional<osg::Vec3d> eye, center, up;
     std::optional<double> fovyDegrees, orthographicHalfHeight;
     osg::Vec4 background{0.0f, 0.0f, 0.0f, 0.0f}; ///< premultiplied
-    std::optional<double> period;
-    std::optional<osgVolumizer::VolumeAppearance::Technique> technique;
+    /// What every appearance of the scene gets.
+    std::vector<std::pair<const osgVolumizer::AppearanceProperty*,
+                          osgVolumizer::AppearanceProperty::Values>>
+        properties;
     std::string output;
     std::string stats;
     int frames = 1;
@@ -30,4 +34,4 @@ struct Arguments
 /// Refuses unknown options, missing or surplus values, and values that make no sense, naming both.
 osgVolumizer::Result<Arguments> parseArguments(int argc, const char* const* argv);
 /// The text of --help.
-const char* usage();
+std::string usage();

@@ -26,17 +26,11 @@ public:
     }
     void apply(osg::Group& group) override
     {
-        if (auto* appearance = dynamic_cast<VolumeAppearance*>(&group)) {
-            if (_arguments.technique) appearance->setTechnique(*_arguments.technique);
-            if (_arguments.period) {
-                const double p = *_arguments.period;
-                const Status set = appearance->setSamplingPeriod(osg::Vec3d(p, p, p));
-                if (!set.ok()) status = set;
-            }
-        }
+        if (auto* appearance = dynamic_cast<VolumeAppearance*>(&group))
+            for (const auto& [property, values] : _arguments.properties)
+                property->set(*appearance, values);
         traverse(group);
     }
-    Status status;
 
 private:
     const Arguments& _arguments;
@@ -92,7 +86,6 @@ Status run(const Arguments& arguments)
                                                       "': " + read.statusMessage() + ".");
     Apply apply(arguments);
     scene->accept(apply);
-    if (!apply.status.ok()) return apply.status;
     osgUtil::Optimizer().optimize(scene.get());
 
     const support::RenderOptions options = viewOf(arguments, scene->getBound());
@@ -106,16 +99,18 @@ Status run(const Arguments& arguments)
     Statistics statistics;
     renderer.render();
     statistics.firstFrame = renderer.counters();
-    if (arguments.turnDegrees != 0.0)
+    if (arguments.turnDegrees != 0.0) {
         turn(renderer, arguments, scene->getBound(), statistics);
-    else
+    } else {
         renderer.options().frames = static_cast<unsigned>(arguments.frames);
-    const support::FloatImage image = renderer.render();
-    if (!renderer.status().ok()) return renderer.status();
-    if (arguments.turnDegrees == 0.0) {
+        renderer.render();
         statistics.milliseconds = renderer.milliseconds();
         statistics.latestFrame = renderer.counters();
     }
+    if (!renderer.status().ok()) return renderer.status();
+    support::FloatImage image;
+    if (!arguments.output.empty()) image = support::renderCoverage(renderer);
+    if (!renderer.status().ok()) return renderer.status();
 
     Status status;
     if (!arguments.output.empty()) status = support::writePicture(image, arguments.output);

@@ -131,6 +131,31 @@ std::map<std::string, double> SceneRenderer::counters() const
     return result;
 }
 
+FloatImage renderCoverage(SceneRenderer& renderer)
+{
+    const osg::Vec4 asked = renderer.options().background;
+    renderer.options().frames = 1;
+    const auto over = [&renderer](const osg::Vec4& background) {
+        renderer.options().background = background;
+        return renderer.render();
+    };
+    const bool opaque = asked.a() >= 1.0f;
+    FloatImage image = over(opaque ? asked : osg::Vec4(0, 0, 0, 1));
+    const FloatImage white = opaque ? image : over(osg::Vec4(1, 1, 1, 1));
+    renderer.options().background = asked;
+    if (white.pixels.size() != image.pixels.size()) return FloatImage();
+    const glm::vec4 behind(asked.r(), asked.g(), asked.b(), asked.a());
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        glm::vec4& p = image.pixels[i];
+        const glm::vec4 through = white.pixels[i] - p;
+        const float left =
+            opaque ? 0.0f : std::clamp((through.r + through.g + through.b) / 3.0f, 0.0f, 1.0f);
+        p.a = 1.0f - left;
+        if (!opaque) p += left * behind;
+    }
+    return image;
+}
+
 FloatImage renderScene(osg::Node* scene, const RenderOptions& options)
 {
     SceneRenderer renderer(scene, options);

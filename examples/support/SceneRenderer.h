@@ -79,6 +79,12 @@ private:
     std::vector<double> _milliseconds;
 };
 
+/// A frame over options().background, with alpha for how much of what is behind is covered,
+/// whatever blend functions the scene has: they also blend alpha, and most do so such that it means
+/// nothing. Drawn over black and over white, if the background is not opaque: what of white comes
+/// through is not covered. Exact where blending is linear in what is behind.
+FloatImage renderCoverage(SceneRenderer& renderer);
+
 /// One picture of a scene; empty where there is no GL.
 FloatImage renderScene(osg::Node* scene, const RenderOptions& options);
 

@@ -3,7 +3,8 @@
 #include <support/PictureFile.h>
 #include <support/Shapes.h>
 
-#include <osgVolumizer/VolumeAppearance.h>
+#include <osgVolumizer/AppearanceProperties.h>
+#include <osgVolumizer/ReadVolume.h>
 #include <osgVolumizer/VolumeGeometry.h>
 
 #include <osgDB/WriteFile>
@@ -170,6 +171,87 @@ TEST_F(RenderToolGLTest, RendersVolumesAsAsked)
     EXPECT_NEAR(fine, 2.0 * coarse, 3.0);
     EXPECT_LT(faces("--technique slabs"), coarse);
     EXPECT_GT(faces("--technique auto"), 0.0);
+}
+
+// Translucent surfaces blend alpha as OSG's usual blend function does, which leaves no coverage.
+TEST_F(RenderToolGLTest, AlphaIsCoverage)
+{
+    osg::ref_ptr<osg::Geometry> square =
+        makeQuad({osg::Vec3(-1, 0, -1), {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}},
+                 osg::Vec4(0.8f, 0.4f, 0, 0.25f), true);
+    square->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    const std::string scene = file("glass.osgb");
+    ASSERT_TRUE(osgDB::writeNodeFile(*square, scene));
+    const auto picture = [&](const std::string& background) {
+        const Outcome outcome = runTool(scene + frontal + "--background " + background +
+                                        " --output " + file("picture.exr"));
+        EXPECT_EQ(outcome.code, 0) << outcome.text;
+        const auto image = readFloatPicture(file("picture.exr"));
+        return image.ok() ? *image : FloatImage();
+    };
+    const auto near = [](const glm::vec4& a, const glm::vec4& b) {
+        return glm::length(a - b) < 1e-6f;
+    };
+    const FloatImage clear = picture("0 0 0 0"), half = picture("0.1 0.2 0.3 0.5"),
+                     opaque = picture("0.2 0.4 0.6 1");
+    EXPECT_TRUE(near(clear.at(8, 4), glm::vec4(0.2f, 0.1f, 0.0f, 0.25f)));
+    EXPECT_TRUE(near(half.at(8, 4), glm::vec4(0.275f, 0.25f, 0.225f, 0.625f)));
+    EXPECT_TRUE(near(opaque.at(8, 4), glm::vec4(0.35f, 0.4f, 0.45f, 1.0f)));
+    EXPECT_EQ(clear.at(0, 0), glm::vec4(0.0f));
+    EXPECT_EQ(half.at(0, 0), glm::vec4(0.1f, 0.2f, 0.3f, 0.5f));
+    EXPECT_EQ(opaque.at(0, 0), glm::vec4(0.2f, 0.4f, 0.6f, 1.0f));
+}
+
+TEST_F(RenderToolGLTest, WholeScenesOverOpaqueAndOverClear)
+{
+    const std::string scene = OSGVOLUMIZER_SOURCE_DIR "/data/mixed.osgt --size 96 72 ";
+    ASSERT_EQ(runTool(scene + "--background 0.2 0.2 0.4 1 --output " + file("opaque.exr")).code, 0);
+    ASSERT_EQ(runTool(scene + "--output " + file("clear.exr")).code, 0);
+    const auto opaque = readFloatPicture(file("opaque.exr")),
+               clear = readFloatPicture(file("clear.exr"));
+    ASSERT_TRUE(opaque.ok() && clear.ok());
+    EXPECT_GT(coveredPixels(*clear, 0.3f).count(), 1000u);
+    for (std::size_t i = 0; i < opaque->pixels.size(); ++i) {
+        const glm::vec4 over =
+            clear->pixels[i] + (1.0f - clear->pixels[i].a) * glm::vec4(0.2f, 0.2f, 0.4f, 1.0f);
+        ASSERT_LT(glm::length(over - opaque->pixels[i]), 1e-5f);
+        ASSERT_EQ(opaque->pixels[i].a, 1.0f);
+    }
+}
+
+TEST_F(RenderToolGLTest, GoesRoundTheScene)
+{
+    const std::string scene = OSGVOLUMIZER_SOURCE_DIR "/data/head.osgt --size 64 64 ";
+    const Outcome outcome = runTool(scene + "--turn 10 --frames 4 --frametime 1e-9 --output " +
+                                    file("turned.exr") + " --stats " + file("turned.json"));
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    ASSERT_EQ(runTool(scene + "--output " + file("still.exr")).code, 0);
+    const auto turned = readFloatPicture(file("turned.exr")),
+               still = readFloatPicture(file("still.exr"));
+    ASSERT_TRUE(turned.ok() && still.ok());
+    EXPECT_EQ(turned->pixels, still->pixels); // back, and exact
+    EXPECT_NE(readText(file("turned.json")).find("\"frames\": 4,"), std::string::npos);
+}
+
+TEST_F(RenderToolGLTest, EveryPropertyIsAnOption)
+{
+    const std::string scene = OSGVOLUMIZER_SOURCE_DIR "/data/head.osgt --size 48 48 ";
+    const auto picture = [&](const std::string& options) {
+        const Outcome outcome = runTool(scene + options + " --output " + file("picture.exr"));
+        EXPECT_EQ(outcome.code, 0) << options << outcome.text;
+        const auto image = readFloatPicture(file("picture.exr"));
+        return image.ok() ? image->pixels : std::vector<glm::vec4>();
+    };
+    const auto plain = picture("");
+    for (const char* options :
+         {"--ray maximum", "--ray isosurface --iso 40", "--unit 0.2", "--shading on",
+          "--shading on --material 1,0,0,1", "--interpolation nearest"})
+        EXPECT_NE(picture(options), plain) << options;
+    const std::string help = runTool("--help").text;
+    for (const auto& property : osgVolumizer::appearanceProperties())
+        EXPECT_NE(help.find(std::string("--") + property.option + " "), std::string::npos);
+    for (const auto& option : osgVolumizer::volumeOptions())
+        EXPECT_NE(help.find(option.name), std::string::npos);
 }
 
 TEST_F(RenderToolGLTest, FramesTheSceneByItself)
