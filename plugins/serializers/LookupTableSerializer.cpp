@@ -1,3 +1,4 @@
+#include "FileReference.h"
 #include "RecordProperty.h"
 
 #include <osgVolumizer/LookupTable.h>
@@ -16,6 +17,7 @@ Status readFile(const Record& record, const osgDB::Options* options, LookupTable
     table.setFileName(name);
     const auto read = readLookupTable(name, options);
     if (!read.ok()) return read.status;
+    table.setFilePath((*read)->getFilePath());
     return table.setPoints((*read)->getFunction()->points(), (*read)->getDomain());
 }
 
@@ -38,10 +40,10 @@ Status applyFunction(Record& record, const osgDB::Options* options, LookupTable&
     return table.setPoints(std::move(points), static_cast<LookupTable::Domain>(domain));
 }
 
-void fillFunction(const LookupTable& table, Record& record)
+void fillFunction(const LookupTable& table, Record& record, const osgDB::OutputStream& os)
 {
-    if (!table.getFileName().empty()) {
-        record.add("FileName", table.getFileName());
+    if (!table.getFileName().empty() && !isEmbedding(os)) {
+        record.add("FileName", referenceFrom(os, table.getFileName(), table.getFilePath()));
         return;
     }
     Field::Doubles values;

@@ -65,7 +65,7 @@ bool hasData(const MemoryVoxelSource& source)
     return source.data() != nullptr;
 }
 
-void fillData(const MemoryVoxelSource& source, Record& record)
+void fillData(const MemoryVoxelSource& source, Record& record, const osgDB::OutputStream&)
 {
     const VoxelSource::Description d = source.describe();
     Bytes bytes;

@@ -19,8 +19,9 @@ bool always(const T&)
 
 /// Registers a property of T whose value is one record.
 /// \tparam Apply Status(Record&, const osgDB::Options*, T&): sets the object from a record, and
-/// says what is wrong with it \tparam Fill void(const T&, Record&): adds the object's fields; the
-/// version is there already \tparam Has bool(const T&): whether the object has the property at all
+/// says what is wrong with it \tparam Fill void(const T&, Record&, const osgDB::OutputStream&):
+/// adds the object's fields; the version is there already \tparam Has bool(const T&): whether the
+/// object has the property at all
 template <class T, auto Apply, auto Fill, auto Has = &always<T>>
 void addRecordProperty(osgDB::ObjectWrapper& wrapper, const char* name)
 {
@@ -35,7 +36,7 @@ void addRecordProperty(osgDB::ObjectWrapper& wrapper, const char* name)
     const auto write = [](osgDB::OutputStream& os, const T& object) {
         Record record;
         record.add("Version", Field::Integers{Record::version});
-        Fill(object, record);
+        Fill(object, record, os);
         writeRecord(os, record);
         return true;
     };

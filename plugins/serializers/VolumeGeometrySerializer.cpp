@@ -53,7 +53,7 @@ Status applyTetraSet(Record& record, const osgDB::Options*, VolumeGeometry& geom
     return status.ok() ? geometry.setTetraSet(std::move(set)) : status;
 }
 
-void fillTetraSet(const VolumeGeometry& geometry, Record& record)
+void fillTetraSet(const VolumeGeometry& geometry, Record& record, const osgDB::OutputStream&)
 {
     const VolumeGeometry::TetraSetPtr set = geometry.getTetraSet();
     const core::VertexFormat& format = set->vertices.format();

@@ -1,3 +1,4 @@
+#include "FileReference.h"
 #include "Objects.h"
 #include "RecordProperty.h"
 
@@ -11,10 +12,11 @@ namespace osgVolumizer {
 namespace serializers {
 namespace {
 
-// Voxels with a file name are written by that name; others with their source.
-bool checkSource(const Voxels& voxels)
+// Voxels with a file name are written by that name; others, and where the scene is to hold all of
+// itself, with their source.
+bool isReferred(const Voxels& voxels, const osgDB::OutputStream& os)
 {
-    return voxels.getFileName().empty() && voxels.getSource();
+    return !voxels.getFileName().empty() && !(isEmbedding(os) && voxels.getSource());
 }
 
 bool readSource(osgDB::InputStream& is, Voxels& voxels)
@@ -53,6 +55,25 @@ bool writeSource(osgDB::OutputStream& os, const Voxels& voxels)
     return true;
 }
 
+// As osgDB::UserSerializer, but whether there is a source to write depends on the stream.
+class SourceSerializer : public osgDB::UserSerializer<Voxels>
+{
+public:
+    SourceSerializer() : osgDB::UserSerializer<Voxels>("Source", nullptr, readSource, writeSource)
+    {
+    }
+    bool write(osgDB::OutputStream& os, const osg::Object& object) override
+    {
+        const auto& voxels = static_cast<const Voxels&>(object);
+        const bool written = voxels.getSource() && !isReferred(voxels, os);
+        if (os.isBinary())
+            os << written;
+        else if (written)
+            os << os.PROPERTY("Source");
+        return !written || writeSource(os, voxels);
+    }
+};
+
 osg::Vec3d vector(const Field::Doubles& v)
 {
     return osg::Vec3d(v[0], v[1], v[2]);
@@ -70,6 +91,7 @@ Status readFile(const Record& record, const osgDB::Options* options, Voxels& vox
     local->setOptionString(fileOptions);
     const auto read = readVoxels(name, local.get());
     if (!read.ok()) return read.status;
+    voxels.setFilePath((*read)->getFilePath());
     status = voxels.setSource((*read)->getSource());
     if (status.ok() && (*read)->hasExplicitRange()) status = voxels.setRange((*read)->getRange());
     return status;
@@ -128,12 +150,12 @@ Status applyBricks(Record& record, const osgDB::Options* options, Voxels& voxels
     return status;
 }
 
-void fillBricks(const Voxels& voxels, Record& record)
+void fillBricks(const Voxels& voxels, Record& record, const osgDB::OutputStream& os)
 {
     const osg::Vec3i size = voxels.getBrickSize();
     const osg::Vec3d spacing = voxels.getSpacing(), origin = voxels.getOrigin();
-    if (!voxels.getFileName().empty()) {
-        record.add("FileName", voxels.getFileName());
+    if (isReferred(voxels, os)) {
+        record.add("FileName", referenceFrom(os, voxels.getFileName(), voxels.getFilePath()));
         record.add("FileOptions", voxels.getFileOptions());
     }
     record.add("BrickSize", Field::Integers{size.x(), size.y(), size.z()});
@@ -153,6 +175,6 @@ using namespace osgVolumizer::serializers;
 REGISTER_OBJECT_WRAPPER(osgVolumizer_Voxels, new osgVolumizer::Voxels, osgVolumizer::Voxels,
                         "osg::Object osgVolumizer::Voxels")
 {
-    ADD_USER_SERIALIZER(Source);
+    wrapper->addSerializer(new SourceSerializer, osgDB::BaseSerializer::RW_USER);
     addRecordProperty<MyClass, &applyBricks, &fillBricks>(*wrapper, "Bricks");
 }

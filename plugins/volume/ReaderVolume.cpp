@@ -3,7 +3,6 @@
 // "engine.raw.256,256,110,uint8.volume"; everything else through the option string, as in:
 // osgviewer -O "spacing=1,1,1.5 table=bone.lut" head.tif.volume
 
-#include <osgVolumizer/Error.h>
 #include <osgVolumizer/ReadVolume.h>
 
 #include <osgDB/FileNameUtils>
@@ -18,12 +17,8 @@ public:
     ReaderVolume()
     {
         supportsExtension("volume", "Pseudo-loader for volumes (osgVolumizer)");
-        supportsOption("spacing=x,y,z", "Object units between samples; 1,1,1");
-        supportsOption("origin=x,y,z", "Object position of the first sample; 0,0,0");
-        supportsOption("range=low,high", "Data values at the ends of the lookup table's domain");
-        supportsOption("brick=n", "Samples per axis of a brick; 256");
-        supportsOption("unit=x", "Object units that the table's opacity is stated for");
-        supportsOption("table=file", "Lookup table, .lut or .tf");
+        for (const osgVolumizer::VolumeOption& option : osgVolumizer::volumeOptions())
+            supportsOption(option.name + "=" + option.values, option.help);
     }
     const char* className() const override { return "osgVolumizer volume pseudo-loader"; }
 
@@ -39,8 +34,8 @@ public:
         if (volume.empty()) return ReadResult::FILE_NOT_HANDLED;
         const auto appearance = osgVolumizer::readVolume(volume, options);
         if (appearance.ok()) return appearance->get();
-        osgVolumizer::reportError(appearance.status);
-        return ReadResult(appearance.status.text); // that is, ERROR_IN_READING_FILE
+        // That is, ERROR_IN_READING_FILE, which osgDB, or whoever called it, tells its user.
+        return ReadResult(appearance.status.text);
     }
 };
 

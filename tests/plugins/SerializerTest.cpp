@@ -358,6 +358,75 @@ TEST_P(SerializerTest, VoxelsByFileAreFoundBesideTheScene)
     EXPECT_NE(errors().find("missing.raw"), std::string::npos) << errors();
 }
 
+// osgconv reads a scene here and writes it there: what the scene refers to is found from there too.
+TEST_P(SerializerTest, ReferencesReachFilesFromAnotherFolder)
+{
+    namespace fs = std::filesystem;
+    writeFile("v.raw", std::string(24, 'x'));
+    writeFile("t.lut", "0 1 0 0 0\n9 0 1 0 0.5\n");
+    const std::string other = std::string("below/deeper/scene.") + GetParam();
+    fs::create_directories(path("below/deeper"));
+    osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+    options->getDatabasePathList().push_back(path(""));
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    const auto voxels = readVoxels("v.raw.2,3,4,uint8", options.get());
+    const auto table = readLookupTable("t.lut", options.get());
+    ASSERT_TRUE(voxels.ok() && table.ok());
+    a->setVoxels(voxels->get());
+    a->setLookupTable(table->get());
+    const auto reads = [&](const osg::Object& object, const std::string& file) {
+        EXPECT_TRUE(osgDB::writeObjectFile(object, path(file)));
+        osg::ref_ptr<osg::Object> read = osgDB::readRefObjectFile(path(file));
+        auto* appearance = dynamic_cast<VolumeAppearance*>(read.get());
+        EXPECT_TRUE(appearance && appearance->getVoxels()) << file;
+        if (appearance && appearance->getVoxels()) {
+            EXPECT_TRUE(appearance->getVoxels()->valid()) << file;
+            EXPECT_EQ(appearance->getLookupTable()->getFunction()->points().size(), 2u) << file;
+        }
+        return osg::ref_ptr<VolumeAppearance>(appearance);
+    };
+    const auto there = reads(*a, other);
+    EXPECT_EQ(there->getVoxels()->getFileName(), "../../v.raw.2,3,4,uint8");
+    EXPECT_EQ(there->getLookupTable()->getFileName(), "../../t.lut");
+    // And back again; beside its files a scene names them as before.
+    const auto back = reads(*there, std::string("back.") + GetParam());
+    EXPECT_EQ(back->getVoxels()->getFileName(), "v.raw.2,3,4,uint8");
+    EXPECT_EQ(reads(*a, std::string("here.") + GetParam())->getVoxels()->getFileName(),
+              "v.raw.2,3,4,uint8");
+    EXPECT_TRUE(errors().empty()) << errors();
+}
+
+TEST_P(SerializerTest, ScenesHoldAllOfThemselvesOnDemand)
+{
+    std::string samples;
+    for (int i = 0; i < 24; ++i)
+        samples += static_cast<char>(10 * i);
+    writeFile("v.raw", samples);
+    writeFile("t.lut", "0 1 0 0 0\n9 0 1 0 0.5\n");
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    const auto voxels = readVoxels(path("v.raw.2,3,4,uint8"));
+    const auto table = readLookupTable(path("t.lut"));
+    ASSERT_TRUE(voxels.ok() && table.ok());
+    a->setVoxels(voxels->get());
+    a->setLookupTable(table->get());
+    for (const char* hint : {"IncludeData", "IncludeFile"}) {
+        osg::ref_ptr<osgDB::Options> options =
+            new osgDB::Options(std::string("WriteImageHint=") + hint);
+        ASSERT_TRUE(osgDB::writeObjectFile(*a, scene(), options.get()));
+        std::filesystem::rename(path("v.raw"), path("gone.raw"));
+        std::filesystem::rename(path("t.lut"), path("gone.lut"));
+        osg::ref_ptr<osg::Object> read = osgDB::readRefObjectFile(scene());
+        std::filesystem::rename(path("gone.raw"), path("v.raw"));
+        std::filesystem::rename(path("gone.lut"), path("t.lut"));
+        auto* b = dynamic_cast<VolumeAppearance*>(read.get());
+        ASSERT_TRUE(b && b->getVoxels() && b->getVoxels()->valid()) << hint << errors();
+        EXPECT_EQ(b->getVoxels()->getFileName(), "");
+        EXPECT_TRUE(sameVoxels(*a->getVoxels(), *b->getVoxels()));
+        EXPECT_EQ(b->getLookupTable()->getFunction()->points().size(), 2u);
+    }
+    EXPECT_TRUE(errors().empty()) << errors();
+}
+
 TEST_P(SerializerTest, WritingTwiceGivesTheSameFile)
 {
     osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
