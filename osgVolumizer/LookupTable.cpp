@@ -16,7 +16,8 @@ LookupTable::LookupTable()
 }
 
 LookupTable::LookupTable(const LookupTable& o, const osg::CopyOp& op)
-    : osg::Object(o, op), _modifiedCount(++lastCount), _fileName(o._fileName)
+    : osg::Object(o, op), _modifiedCount(++lastCount), _fileName(o._fileName),
+      _filePath(o._filePath)
 {
     std::lock_guard<std::mutex> lock(o._mutex);
     _function = o._function;

@@ -64,6 +64,10 @@ public:
     /// empty.
     void setFileName(const std::string& name) { _fileName = name; }
     const std::string& getFileName() const { return _fileName; }
+    /// Where that file was found, as an absolute name; empty where that is not known.
+    /// readLookupTable() sets it; a scene file in another folder refers to it.
+    void setFilePath(const std::string& path) { _filePath = path; }
+    const std::string& getFilePath() const { return _filePath; }
 
 protected:
     ~LookupTable() override = default;
@@ -76,13 +80,14 @@ private:
     Function _function;
     Domain _domain = RANGE_FRACTION;
     std::atomic<unsigned> _modifiedCount;
-    std::string _fileName;
+    std::string _fileName, _filePath;
     mutable RenderDataSlot _renderData; // textures, shared by all appearances that have the table
 };
 
 /// Reads a `.lut` (plain text, "value r g b a" per line in data values, '#' starts a comment) or
 /// OSG's `.tf` (the same, components 0 to 255 unless a line "colour-scale n" says otherwise, in any
-/// order). Found along OSG's data path. The error names file, line and value; files above 64 MiB,
+/// order). Found along OSG's data path. The error names file, line and value, or, with
+/// NOT_SUPPORTED, the format of another program that the file seems to have; files above 64 MiB,
 /// and what is no regular file, are refused.
 OSGVOLUMIZER_EXPORT Result<osg::ref_ptr<LookupTable>>
 readLookupTable(const std::string& fileName, const osgDB::Options* options = nullptr);

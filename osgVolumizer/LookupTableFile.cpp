@@ -2,6 +2,7 @@
 
 #include "core/RegularFile.h"
 #include "core/Text.h"
+#include "io/ForeignTable.h"
 
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
@@ -163,12 +164,20 @@ Result<osg::ref_ptr<LookupTable>> readLookupTable(const std::string& fileName,
     const bool tf = osgDB::getLowerCaseFileExtension(fileName) == "tf";
     Result<LookupPoints> points =
         tf ? parseTransferFunctionFile(*text, fileName) : parseLookupTable(*text, fileName);
-    if (!points.ok()) return points.status;
+    if (!points.ok()) {
+        const std::string foreign = io::foreignTableFormat(*text, fileName);
+        if (foreign.empty()) return points.status;
+        return Status(ErrorCode::NOT_SUPPORTED,
+                      "lookup table " + fileName + " is " + foreign +
+                          "; what can be read is a .lut, lines of value, red, green, blue and "
+                          "opacity, and a .tf");
+    }
     osg::ref_ptr<LookupTable> table = new LookupTable;
     const CallerReports quiet;
     const Status status = table->setPoints(std::move(*points), LookupTable::DATA_VALUES);
     if (!status.ok()) return status;
     table->setFileName(fileName);
+    table->setFilePath(std::filesystem::absolute(path).string());
     return table;
 }
 

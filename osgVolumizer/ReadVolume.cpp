@@ -2,15 +2,26 @@
 
 #include "VolumeGeometry.h"
 #include "core/transfer/ScanStatistics.h"
+#include "core/transfer/VisibleSphere.h"
+#include "core/voxels/Preview.h"
 #include "io/RawName.h"
 #include "io/VoxelOptions.h"
 
+#include <osg/LOD>
+#include <osg/MatrixTransform>
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
+
+#include <cfloat>
+#include <optional>
 
 namespace osgVolumizer {
 
 namespace {
+
+constexpr double FRAME_TIME = 1.0 / 15.0; // seconds, while the view moves
+constexpr VolumeAppearance::Material MATERIAL{0.35, 0.95, 0.25, 24.0}; // brighter than the default
+constexpr double SMOOTH = 1.5; // see core::Preview::smoothness()
 
 /// The table, looked for beside the volume as well.
 Result<osg::ref_ptr<LookupTable>> readTable(const std::string& table, const std::string& volume,
@@ -26,22 +37,122 @@ Result<osg::ref_ptr<LookupTable>> readTable(const std::string& table, const std:
     return readLookupTable(table, local.get());
 }
 
+core::ValueRange rangeOf(const Voxels& voxels)
+{
+    const osg::Vec2d range = voxels.getRange();
+    return {range.x(), range.y()};
+}
+
+// Reads all bricks; expects valid voxels.
+core::Preview previewOf(const Voxels& voxels)
+{
+    core::Preview preview(voxels.getLayout().size());
+    for (std::int64_t i = 0; i < voxels.getLayout().brickCount(); ++i) {
+        const core::Box3i samples = voxels.getLayout().brick(i).samples;
+        if (const Voxels::Block block = voxels.getBrick(i))
+            preview.add({block.data, voxels.getType(), voxels.getComponents(), samples.size()},
+                        samples.min);
+    }
+    return preview;
+}
+
+osg::ref_ptr<LookupTable> suggestedTable(const Voxels& voxels, const core::Preview& preview)
+{
+    osg::ref_ptr<LookupTable> table = new LookupTable;
+    core::ScanStatistics statistics(preview.view().size, rangeOf(voxels));
+    statistics.add(preview.view());
+    const core::TransferFunction suggested =
+        core::suggestTransferFunction(statistics, preview.step());
+    table->setPoints(suggested.points(), LookupTable::RANGE_FRACTION);
+    return table;
+}
+
+Status setTable(VolumeAppearance& appearance, const io::VoxelOptions& said,
+                const std::string& volume, const osgDB::Options* options,
+                const core::Preview* preview)
+{
+    if (said.table) {
+        const Result<osg::ref_ptr<LookupTable>> table = readTable(*said.table, volume, options);
+        if (!table.ok()) return table.status;
+        appearance.setLookupTable(table->get());
+    } else if (said.ramp) {
+        return appearance.getLookupTable()->setRamp(said.ramp->x, said.ramp->y, osg::Vec3(1, 1, 1),
+                                                    said.ramp->z);
+    } else if (preview) {
+        appearance.setLookupTable(suggestedTable(*appearance.getVoxels(), *preview));
+    }
+    return {};
+}
+
+void setProperties(VolumeAppearance& appearance, const io::VoxelOptions& said,
+                   const core::Preview* preview)
+{
+    if (!said.has("frametime")) appearance.setTargetFrameTime(FRAME_TIME);
+    if (!said.has("shading")) appearance.setShading(preview && preview->smoothness() > SMOOTH);
+    appearance.setMaterial(MATERIAL);
+    for (const auto& [property, values] : said.properties)
+        property->set(appearance, values);
+}
+
+osg::Matrixd turn(const glm::dmat3& axes)
+{
+    // OSG multiplies rows: row i is where axis i points.
+    return {axes[0].x, axes[0].y, axes[0].z, 0, axes[1].x, axes[1].y, axes[1].z, 0,
+            axes[2].x, axes[2].y, axes[2].z, 0, 0,         0,         0,         1};
+}
+
+// The sphere that viewers are to frame, in the frame of the box.
+osg::BoundingSphere framed(const VolumeAppearance& appearance, const osg::BoundingSphere& box,
+                           const core::Preview& preview)
+{
+    const Voxels& voxels = *appearance.getVoxels();
+    const osg::Vec3d spacing = voxels.getSpacing();
+    const osg::Vec2d range = voxels.getRange();
+    const std::optional<core::Sphere> sphere = core::visibleSphere(
+        preview.view(), rangeOf(voxels), *appearance.getLookupTable()->getNormalizedFunction(range),
+        double(preview.step()) * glm::dvec3(spacing.x(), spacing.y(), spacing.z()));
+    if (!sphere || !(sphere->radius < box.radius())) return box;
+    const glm::dvec3& c = sphere->center;
+    return {osg::Vec3(osg::Vec3d(c.x, c.y, c.z) + voxels.getOrigin()),
+            static_cast<float>(sphere->radius)};
+}
+
+osg::ref_ptr<osg::Node> placed(const VolumeAppearance& appearance, const glm::dmat3& axes,
+                               const core::Preview* preview)
+{
+    const osg::ref_ptr<VolumeGeometry> box = VolumeGeometry::createBox(*appearance.getVoxels());
+    osg::ref_ptr<osg::Node> node = box;
+    const osg::Matrixd matrix = turn(axes);
+    if (!matrix.isIdentity()) {
+        osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(matrix);
+        transform->setName("upright");
+        transform->setDataVariance(osg::Object::STATIC);
+        transform->addChild(box);
+        node = transform;
+    }
+    if (!preview) return node;
+    const osg::BoundingSphere sphere = framed(appearance, box->getBound(), *preview);
+    osg::ref_ptr<osg::LOD> frame = new osg::LOD;
+    frame->setName("framed by what shows");
+    frame->setCenterMode(osg::LOD::USER_DEFINED_CENTER);
+    frame->setCenter(osg::Vec3d(sphere.center()) * matrix);
+    frame->setRadius(sphere.radius());
+    frame->addChild(node, 0.0f, FLT_MAX);
+    frame->setCullingActive(false); // of the sphere: the volume reaches beyond it
+    return frame;
+}
+
 } // namespace
 
 osg::ref_ptr<LookupTable> createSuggestedTable(const Voxels& voxels)
 {
-    osg::ref_ptr<LookupTable> table = new LookupTable;
-    if (!voxels.valid() || voxels.getComponents() != 1) return table;
-    const osg::Vec2d range = voxels.getRange();
-    core::ScanStatistics statistics(voxels.getLayout().size(), {range.x(), range.y()});
-    for (std::int64_t i = 0; i < voxels.getLayout().brickCount(); ++i) {
-        const core::Box3i samples = voxels.getLayout().brick(i).samples;
-        if (const Voxels::Block block = voxels.getBrick(i))
-            statistics.add({block.data, voxels.getType(), 1, samples.size()}, samples.min);
-    }
-    table->setPoints(core::suggestTransferFunction(statistics).points(),
-                     LookupTable::RANGE_FRACTION);
-    return table;
+    if (!voxels.valid() || voxels.getComponents() != 1) return new LookupTable;
+    return suggestedTable(voxels, previewOf(voxels));
+}
+
+std::vector<VolumeOption> volumeOptions()
+{
+    return io::voxelOptionHelp();
 }
 
 Result<osg::ref_ptr<VolumeAppearance>>
@@ -55,17 +166,14 @@ readVolume(const std::string& name, const osgDB::Options* options, const Progres
     osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
     appearance->setName(osgDB::getSimpleFileName(name));
     appearance->setVoxels(voxels->get());
-    if (said.table) {
-        const Result<osg::ref_ptr<LookupTable>> table = readTable(*said.table, name, options);
-        if (!table.ok()) return table.status;
-        appearance->setLookupTable(table->get());
-    } else {
-        appearance->setLookupTable(createSuggestedTable(**voxels).get());
-    }
+    std::optional<core::Preview> preview;
+    if ((*voxels)->getComponents() == 1) preview = previewOf(**voxels);
+    const core::Preview* p = preview ? &*preview : nullptr;
     const CallerReports quiet;
-    if (said.unit)
-        if (Status status = appearance->setOpacityUnit(*said.unit); !status.ok()) return status;
-    appearance->addChild(VolumeGeometry::createBox(**voxels).get());
+    if (Status status = setTable(*appearance, said, name, options, p); !status.ok()) return status;
+    setProperties(*appearance, said, p);
+    const glm::dmat3 axes = said.axes.value_or((*voxels)->getSource()->describe().axes);
+    appearance->addChild(placed(*appearance, axes, p));
     return appearance;
 }
 

@@ -5,11 +5,22 @@
 
 namespace osgVolumizer {
 
-/// Reads a volume ready to be shown: voxels by readVoxels(), in one box. The option string of
-/// `options` may also hold
-///   unit=x      the opacity unit, in object units
-///   table=file  a .lut or .tf, found along OSG's data path or beside the volume
-/// Without a table, createSuggestedTable() makes one.
+/// Reads a volume ready to be shown: voxels by readVoxels(), in one box, with a look that pleases
+/// without a setting. The option string of `options` may hold every property of VolumeAppearance by
+/// its option (see AppearanceProperties.h; "ray=maximum shading=off"), and
+///   table=file              a .lut or .tf, found along OSG's data path or beside the volume; a
+///                           name with blanks stands in quotation marks
+///   ramp=centre,width[,opacity]  a white table instead
+///   orientation=LPS         where the voxel axes point, where the file does not say: left or
+///                           right, posterior or anterior, superior or inferior
+/// Words of others are left alone, with a message at osg::INFO.
+///
+/// Where nothing is said: createSuggestedTable() makes the table; volumes of one component whose
+/// values run smoothly are lit; views that move get frames of at most 1/15 s, and the exact picture
+/// once they rest. The appearance's children are the box, turned as the file (or `orientation`)
+/// says, so that heads are up, and above it an osg::LOD of one level: its bounding sphere is not
+/// that of the box but of what the table shows, for viewers to frame. For that, and for the table,
+/// all bricks are read.
 OSGVOLUMIZER_EXPORT Result<osg::ref_ptr<VolumeAppearance>>
 readVolume(const std::string& name, const osgDB::Options* options = nullptr,
            const Progress& progress = {});
@@ -18,5 +29,13 @@ readVolume(const std::string& name, const osgDB::Options* options = nullptr,
 /// see core/transfer/ScanStatistics.h. Reads all bricks. RGBA voxels bring their own look; they get
 /// the default table.
 OSGVOLUMIZER_EXPORT osg::ref_ptr<LookupTable> createSuggestedTable(const Voxels& voxels);
+
+/// An option of readVolume() as it is written, and what it is.
+struct VolumeOption
+{
+    std::string name, values, help;
+};
+/// All of them, voxels first, then the table, then the properties of VolumeAppearance.
+OSGVOLUMIZER_EXPORT std::vector<VolumeOption> volumeOptions();
 
 } // namespace osgVolumizer

@@ -3,6 +3,7 @@
 #include "io/VoxelFiles.h"
 #include "io/VoxelOptions.h"
 
+#include <osg/Notify>
 #include <osgDB/FileUtils>
 #include <osgDB/Registry>
 
@@ -24,6 +25,27 @@ std::vector<std::string> searchFolders(const osgDB::Options* options)
     return folders;
 }
 
+// The name of a volume in the folder that it was found in.
+std::string inFolderOf(const std::string& path, const std::string& name)
+{
+    namespace fs = std::filesystem;
+    return (fs::absolute(path).parent_path() / fs::path(name).filename()).string();
+}
+
+// Whether a DICOM file lies beside others.
+bool hasOtherSlices(const std::string& path)
+{
+    namespace fs = std::filesystem;
+    if (!io::isDicomFile(path)) return false;
+    std::error_code error;
+    for (fs::directory_iterator i(fs::absolute(path).parent_path(), error), end; !error && i != end;
+         i.increment(error))
+        if (i->path().filename() != fs::path(path).filename() &&
+            io::isDicomFile(i->path().string()))
+            return true;
+    return false;
+}
+
 Result<io::Source> readFiles(const Result<std::vector<std::string>>& paths,
                              const Progress& progress)
 {
@@ -31,17 +53,23 @@ Result<io::Source> readFiles(const Result<std::vector<std::string>>& paths,
     return io::readStack(*paths, progress);
 }
 
+// Also finds the absolute name of the volume.
 Result<io::Source> readSource(std::string name, const osgDB::Options* options,
-                              const Progress& progress)
+                              const Progress& progress, std::string& found)
 {
     while (name.size() > 1 && name.back() == '/')
         name.pop_back();
     const std::string path = name.empty() ? name : osgDB::findDataFile(name, options);
     if (!path.empty()) {
+        found = inFolderOf(path, name);
         std::error_code unknown; // OSG takes sockets for folders
         if (std::filesystem::is_directory(path, unknown))
             return readFiles(io::listFolder(path), progress);
-        return io::readImage(path, progress);
+        Result<io::Source> source = io::readImage(path, progress);
+        if (source.ok() && (*source)->describe().size.z == 1 && hasOtherSlices(path))
+            OSG_NOTICE << "osgVolumizer: " << path << " is one slice; the name of its folder opens "
+                       << "all that lie there" << std::endl;
+        return source;
     }
     if (io::looksRaw(name)) {
         const Result<io::RawName> raw = io::parseRawName(name);
@@ -50,10 +78,15 @@ Result<io::Source> readSource(std::string name, const osgDB::Options* options,
         if (rawPath.empty())
             return Status(ErrorCode::FILE_NOT_FOUND,
                           "raw file " + raw->fileName + " was not found");
+        found = inFolderOf(rawPath, name);
         return io::readRaw(*raw, rawPath, progress);
     }
-    if (io::looksLikePattern(name))
-        return readFiles(io::listPattern(name, searchFolders(options)), progress);
+    if (io::looksLikePattern(name)) {
+        const Result<std::vector<std::string>> files =
+            io::listPattern(name, searchFolders(options));
+        if (files.ok() && !files->empty()) found = inFolderOf(files->front(), name);
+        return readFiles(files, progress);
+    }
     return Status(ErrorCode::FILE_NOT_FOUND, "volume \"" + name + "\" was not found");
 }
 
@@ -72,6 +105,7 @@ Status apply(Voxels& voxels, const io::VoxelOptions& options)
         const glm::ivec3& brick = *options.brick;
         status = voxels.setBrickSize({brick.x, brick.y, brick.z});
     }
+    if (status.ok() && options.overlap) status = voxels.setOverlap(*options.overlap);
     return status;
 }
 
@@ -94,10 +128,15 @@ Result<osg::ref_ptr<Voxels>> read(const std::string& name, const osgDB::Options*
     const Result<io::VoxelOptions> said =
         io::parseVoxelOptions(options ? options->getOptionString() : std::string());
     if (!said.ok()) return Status(said.status.code, name + ": " + said.status.text);
+    for (const std::string& option : said->foreign)
+        OSG_INFO << "osgVolumizer: " << name << ": option \"" << option
+                 << "\" is none of a volume's, and left to others" << std::endl;
+    std::string found;
     Result<osg::ref_ptr<Voxels>> voxels =
-        makeVoxels(readSource(name, options, progress), *said, name);
+        makeVoxels(readSource(name, options, progress, found), *said, name);
     if (!voxels.ok()) return voxels;
     (*voxels)->setFileName(name);
+    (*voxels)->setFilePath(found);
     (*voxels)->setFileOptions(said->voxelText());
     return voxels;
 }

@@ -22,13 +22,14 @@ using Progress = std::function<void(double fraction)>;
 /// - a raw file as "name.raw.256,256,110,uint8[,headerBytes[,big|little]]".
 /// A raw file stays open and is read brick by brick, as bricks are asked for; all others are read
 /// into memory.
-/// Image row 0 is j = 0, the first slice k = 0. Four channels R, G, B, A make RGBA voxels, R, G, B
-/// their luminance, anything else its first channel.
+/// Image row 0 is j = 0, the first slice k = 0. A single slice is drawn as thick as its spacing.
+/// Four channels R, G, B, A make RGBA voxels, R, G, B their luminance, anything else its first
+/// channel.
 ///
 /// The option string of `options` holds, separated by blanks and all optional:
-///   spacing=x,y,z  origin=x,y,z  range=low,high  brick=n | brick=x,y,z
-/// (unit= and table= are accepted, and are for the .volume loader). The result refers to the file
-/// by the name and options given here.
+///   spacing=x,y,z  origin=x,y,z  range=low,high  brick=n | brick=x,y,z  overlap=n
+/// Others are left alone: they may be readVolume()'s, or another loader's. The result refers to the
+/// file by the name and options given here.
 ///
 /// Refused: FILE_NOT_FOUND; FILE_UNREADABLE (cut short, or no volume); SIZE_MISMATCH (a raw file of
 /// another length, unequal slices); VALUE_INVALID (option or raw format); TOO_LARGE (more than 2^36

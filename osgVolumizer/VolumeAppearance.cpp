@@ -52,6 +52,25 @@ void VolumeAppearance::accept(osg::NodeVisitor& visitor)
 void VolumeAppearance::setVoxels(Voxels* voxels)
 {
     _voxels = voxels;
+    requireOverlap();
+}
+
+void VolumeAppearance::setInterpolation(Interpolation interpolation)
+{
+    _interpolation = interpolation;
+    requireOverlap();
+}
+
+void VolumeAppearance::setShading(bool shading)
+{
+    _shading = shading;
+    requireOverlap();
+}
+
+// Where it is refused a frame says so: by then it may no longer be needed.
+void VolumeAppearance::requireOverlap()
+{
+    if (_voxels) (void)_voxels->requireOverlap(getRequiredOverlap());
 }
 
 void VolumeAppearance::setLookupTable(LookupTable* table)

@@ -128,7 +128,7 @@ public:
 
     void setTechnique(Technique technique) { _technique = technique; }
     Technique getTechnique() const { return _technique; }
-    void setInterpolation(Interpolation interpolation) { _interpolation = interpolation; }
+    void setInterpolation(Interpolation interpolation);
     Interpolation getInterpolation() const { return _interpolation; }
     void setLookup(Lookup lookup) { _lookup = lookup; }
     Lookup getLookup() const { return _lookup; }
@@ -146,7 +146,7 @@ public:
     /// Lights the volume with the scene's lights (osg::LightSource, the viewer's head light; up to
     /// eight, a head light where there is none): Blinn-Phong, two-sided, normals from the gradient.
     /// Off by default. Where the voxels do not vary there is no normal, and only ambient light.
-    void setShading(bool shading) { _shading = shading; }
+    void setShading(bool shading);
     bool getShading() const { return _shading; }
     /// colour * (ambient + sum over lights (light's ambient + diffuse * light's diffuse * |n l|)) +
     /// specular * light's specular * |n h|^shininess; each coefficient in [0, 1000] (more
@@ -168,8 +168,9 @@ public:
     int getAccumulationBits() const { return _accumulationBits; }
 
     /// Samples that bricks must share for interpolation and shading to show no seams: 1, and 2 more
-    /// each for CUBIC and for shading. Voxels::setOverlap() should get at least this; with less,
-    /// an error is reported, CUBIC falls back to LINEAR, and shading shows seams.
+    /// each for CUBIC and for shading. The voxels' overlap is raised to this where it is less, as
+    /// soon as there are both. Where bricks are too small for that, or it is set to less later, an
+    /// error is reported, CUBIC falls back to LINEAR, and shading shows seams.
     int getRequiredOverlap() const;
 
     void setSamplingMode(SamplingMode mode) { _sampling.mode = mode; }
@@ -234,6 +235,8 @@ protected:
 
 private:
     friend struct RenderDataAccess;
+
+    void requireOverlap();
 
     osg::ref_ptr<Voxels> _voxels;
     osg::ref_ptr<LookupTable> _lookupTable;

@@ -6,6 +6,7 @@
 
 #include <osg/Object>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
@@ -38,6 +39,10 @@ public:
         int components = 1;      ///< 1 scalar, 4 RGBA
         glm::dvec3 spacing{1.0}; ///< object units between samples
         glm::dvec3 origin{0.0};  ///< object position of sample (0,0,0)
+        /// Where the voxel axes point, a unit vector each, as far as the file says: in the frame of
+        /// DICOM and ITK, x to the left, y to the back, z to the head. Of no effect on voxels by
+        /// themselves: readVolume() turns what it makes.
+        glm::dmat3 axes{1.0};
 
         std::int64_t sizeInBytes() const;
         /// Refuses a size below 1, an unknown type, components other than 1 and 4, a spacing
@@ -50,13 +55,13 @@ public:
     /// packed, in native byte order.
     virtual Status read(const core::Box3i& region, void* destination) const = 0;
     /// Lowest and highest value in a region where that is known without reading; else nothing.
-    virtual std::optional<std::pair<double, double>> valueRange(const core::Box3i& region) const
+    virtual std::optional<std::pair<double, double>> valueRange(const core::Box3i& /*region*/) const
     {
         return std::nullopt;
     }
     /// The samples of a region where they lie in memory as read() would write them; else an empty
     /// block. Saves the copy.
-    virtual VoxelBlock share(const core::Box3i& region) const { return {}; }
+    virtual VoxelBlock share(const core::Box3i& /*region*/) const { return {}; }
 
 protected:
     VoxelSource() = default;

@@ -65,8 +65,8 @@ Voxels::Voxels(const Voxels& o, const osg::CopyOp& op)
     : osg::Object(o, op),
       _source(dynamic_cast<VoxelSource*>(op(static_cast<const osg::Object*>(o._source.get())))),
       _description(o._description), _brickSize(o._brickSize), _overlap(o._overlap),
-      _layout(o._layout), _fileName(o._fileName), _fileOptions(o._fileOptions),
-      _layoutCount(nextLayoutCount())
+      _layout(o._layout), _fileName(o._fileName), _filePath(o._filePath),
+      _fileOptions(o._fileOptions), _layoutCount(nextLayoutCount())
 {
     std::lock_guard<std::mutex> lock(o._rangeMutex);
     _explicitRange = o._explicitRange;
@@ -216,6 +216,23 @@ ReportedStatus Voxels::setBrickSize(const osg::Vec3i& samples)
 
 ReportedStatus Voxels::setOverlap(int samples)
 {
+    return rebuildLayout(_brickSize, samples);
+}
+
+Status Voxels::requireOverlap(int samples)
+{
+    if (samples <= _overlap) return {};
+    if (valid() && _layout.brickCount() == 1) {
+        // A single brick is all of the voxels, however much it would share.
+        Result<core::BrickLayout> layout =
+            core::BrickLayout::create(_description.size, _brickSize, samples);
+        if (layout.ok() && layout->brickCount() == 1) {
+            _layout = *layout;
+            _overlap = samples;
+            return {};
+        }
+    }
+    const CallerReports quiet;
     return rebuildLayout(_brickSize, samples);
 }
 

@@ -71,6 +71,10 @@ public:
     /// Samples shared by neighbours: 1 for linear filtering, 3 for cubic.
     ReportedStatus setOverlap(int samples);
     int getOverlap() const { return _overlap; }
+    /// Raises the overlap to at least so many, as each appearance that has these voxels does to
+    /// what it needs: see VolumeAppearance::getRequiredOverlap(). Refused as by setOverlap(), but
+    /// without a report.
+    Status requireOverlap(int samples);
     const core::BrickLayout& getLayout() const { return _layout; }
 
     /// Bound on the bricks that are kept: 32 MiB.
@@ -102,6 +106,10 @@ public:
     /// Where it is empty, the scene file holds the voxels.
     void setFileName(const std::string& name) { _fileName = name; }
     const std::string& getFileName() const { return _fileName; }
+    /// Where the file of that name was found, as an absolute name of the same form; empty where
+    /// that is not known. readVoxels() sets it; a scene file in another folder refers to it.
+    void setFilePath(const std::string& path) { _filePath = path; }
+    const std::string& getFilePath() const { return _filePath; }
     void setFileOptions(const std::string& options) { _fileOptions = options; }
     const std::string& getFileOptions() const { return _fileOptions; }
 
@@ -135,7 +143,7 @@ private:
     glm::ivec3 _brickSize{256};
     int _overlap = 1;
     core::BrickLayout _layout;
-    std::string _fileName, _fileOptions;
+    std::string _fileName, _filePath, _fileOptions;
     bool _explicitRange = false;
     mutable bool _rangeKnown = true;
     mutable osg::Vec2d _range{0.0, 1.0};

@@ -1,5 +1,6 @@
 #include "Text.h"
 
+#include <algorithm>
 #include <charconv>
 
 namespace osgVolumizer {
@@ -62,6 +63,52 @@ std::vector<std::string_view> splitBlanks(std::string_view text)
         pieces.push_back(text.substr(0, end));
         if (end == std::string_view::npos) return pieces;
         text.remove_prefix(end);
+    }
+}
+
+namespace {
+
+constexpr std::string_view BLANKS = " \t\r\n\f\v";
+
+// Takes what is quoted, or all up to one of `ends`, off the front of a text.
+std::string takeWord(std::string_view& text, const std::string& ends, bool& closed)
+{
+    std::size_t first = 0, length = 0;
+    if (!text.empty() && (text[0] == '"' || text[0] == '\'')) {
+        const std::size_t end = text.find(text[0], 1);
+        closed = end != std::string_view::npos;
+        first = 1;
+        length = closed ? end - 1 : text.size() - 1;
+    } else {
+        length = std::min(text.find_first_of(ends), text.size());
+    }
+    std::string word(text.substr(first, length));
+    text.remove_prefix(std::min(text.size(), length + 2 * first));
+    return word;
+}
+
+} // namespace
+
+std::vector<Option> splitOptions(std::string_view text)
+{
+    std::vector<Option> options;
+    while (true) {
+        text.remove_prefix(std::min(text.find_first_not_of(BLANKS), text.size()));
+        if (text.empty()) return options;
+        Option option;
+        const bool quoted = text[0] == '"' || text[0] == '\'';
+        option.name = takeWord(text, std::string(BLANKS) + '=', option.closed);
+        if (quoted) {
+            const std::size_t equals = option.name.find('=');
+            option.hasValue = equals != std::string::npos;
+            if (option.hasValue) option.value = option.name.substr(equals + 1);
+            option.name.resize(std::min(equals, option.name.size()));
+        } else if (!text.empty() && text[0] == '=') {
+            text.remove_prefix(1);
+            option.hasValue = true;
+            option.value = takeWord(text, std::string(BLANKS), option.closed);
+        }
+        options.push_back(std::move(option));
     }
 }
 

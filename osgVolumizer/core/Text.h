@@ -24,6 +24,16 @@ OSGVOLUMIZER_CORE_EXPORT std::vector<std::string_view> splitText(std::string_vie
                                                                  char separator);
 /// The pieces between blanks (blank, tabulator, line ends), none of them empty.
 OSGVOLUMIZER_CORE_EXPORT std::vector<std::string_view> splitBlanks(std::string_view text);
+/// An option as in "name=value": between blanks, unless the value (or all of it) is quoted.
+struct Option
+{
+    std::string name, value; ///< without quotation marks; the value of a mere name is empty
+    bool hasValue = false;
+    bool closed = true; ///< the quotation has an end
+};
+/// The options of a string, in order. Quotation marks, single or double, count where a word or a
+/// value begins; all up to the next of the kind belongs to the value.
+OSGVOLUMIZER_CORE_EXPORT std::vector<Option> splitOptions(std::string_view text);
 /// Writes as few digits as read back to the same number.
 OSGVOLUMIZER_CORE_EXPORT std::string formatNumber(double value);
 /// "x,y,z"

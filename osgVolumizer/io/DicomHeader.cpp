@@ -3,6 +3,8 @@
 #include "../core/Text.h"
 #include "../core/voxels/VoxelData.h"
 
+#include <glm/geometric.hpp>
+
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -176,6 +178,21 @@ std::optional<double> positionOf(const Values& values)
            (a[0] * a[4] - a[1] * a[3]) * p[2];
 }
 
+/// Directions of the columns' index, the rows' index and their normal; identity where the file does
+/// not say, or says what are no two directions at a right angle.
+glm::dmat3 axesOf(const Values& values)
+{
+    const std::vector<double> a = values.decimals(IMAGE_ORIENTATION);
+    if (a.size() != 6) return glm::dmat3(1.0);
+    const glm::dvec3 x(a[0], a[1], a[2]), y(a[3], a[4], a[5]);
+    const double lengths = glm::length(x) * glm::length(y);
+    if (!(lengths > 0.0) || !std::isfinite(lengths) ||
+        !(std::fabs(glm::dot(x, y)) < 1e-3 * lengths))
+        return glm::dmat3(1.0);
+    const glm::dvec3 first = glm::normalize(x), normal = glm::normalize(glm::cross(x, y));
+    return {first, glm::cross(normal, first), normal};
+}
+
 Status check(const DicomHeader& h, int samplesPerPixel, const std::string& name)
 {
     const auto refuse = [&](ErrorCode code, const std::string& what) {
@@ -218,6 +235,7 @@ Result<DicomHeader> interpret(const Values& values, const std::string& name)
     h.sliceSpacing =
         std::fabs(values.decimal(SPACING_BETWEEN_SLICES, values.decimal(SLICE_THICKNESS, 0.0)));
     h.position = positionOf(values);
+    h.axes = axesOf(values);
     const double instance = values.decimal(INSTANCE_NUMBER, NAN);
     if (std::fabs(instance) < 1e15) h.instance = static_cast<std::int64_t>(instance);
     if (Status status = check(h, values.number(SAMPLES_PER_PIXEL, 1), name); !status.ok())

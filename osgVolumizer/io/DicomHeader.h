@@ -3,6 +3,7 @@
 #include "../core/Export.h"
 #include "../core/Status.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -31,6 +32,9 @@ struct DicomHeader
     double sliceSpacing =
         0.0; ///< mm between slices or, failing that, their thickness; 0 where unsaid
     std::optional<double> position; ///< mm along the normal of the slice
+    /// Directions of columns' index, rows' index and normal in the patient's frame; identity where
+    /// unsaid.
+    glm::dmat3 axes{1.0};
     std::optional<std::int64_t> instance;
 
     std::int64_t pixelBytes() const

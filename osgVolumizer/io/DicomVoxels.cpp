@@ -70,6 +70,7 @@ VoxelSource::Description describe(const std::vector<DicomFile>& files)
     d.size = first.size;
     if (files.size() > 1) d.size.z = static_cast<int>(files.size());
     d.type = commonType(files);
+    d.axes = first.axes;
     if (!(first.pixelSpacing.x > 0.0)) return d;
     double between = first.sliceSpacing;
     if (files.size() > 1 && first.position && files.back().header.position)

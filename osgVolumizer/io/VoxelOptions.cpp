@@ -2,12 +2,26 @@
 
 #include "../core/Text.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <functional>
 
 namespace osgVolumizer {
 namespace io {
 
 namespace {
+
+using Setter = std::function<bool(VoxelOptions&, const std::string&)>;
+
+struct Row
+{
+    const char* name;
+    const char* expected; ///< completes "is ..., expected "
+    const char* values;   ///< as they are written
+    const char* help;
+    Setter set; ///< false for a bad value
+};
 
 bool parseTriple(std::string_view text, glm::dvec3& v)
 {
@@ -15,7 +29,32 @@ bool parseTriple(std::string_view text, glm::dvec3& v)
            std::isfinite(v.z);
 }
 
-bool parseBrick(std::string_view text, glm::ivec3& v)
+bool setSpacing(VoxelOptions& o, const std::string& text)
+{
+    glm::dvec3 v;
+    if (!parseTriple(text, v) || !(v.x > 0.0 && v.y > 0.0 && v.z > 0.0)) return false;
+    o.spacing = v;
+    return true;
+}
+
+bool setOrigin(VoxelOptions& o, const std::string& text)
+{
+    glm::dvec3 v;
+    if (!parseTriple(text, v)) return false;
+    o.origin = v;
+    return true;
+}
+
+bool setRange(VoxelOptions& o, const std::string& text)
+{
+    glm::dvec2 v;
+    if (!core::parseNumbers(text, &v.x, 2) || !(v.x < v.y) || !std::isfinite(v.y - v.x))
+        return false;
+    o.range = v;
+    return true;
+}
+
+bool setBrick(VoxelOptions& o, const std::string& text)
 {
     std::int64_t n[3];
     const std::vector<std::string_view> pieces = core::splitText(text, ',');
@@ -24,44 +63,105 @@ bool parseBrick(std::string_view text, glm::ivec3& v)
         if (!core::parseInteger(pieces[pieces.size() == 3 ? i : 0], n[i]) || n[i] < 2 ||
             n[i] > 65536)
             return false;
-    v = glm::ivec3(static_cast<int>(n[0]), static_cast<int>(n[1]), static_cast<int>(n[2]));
+    o.brick = glm::ivec3(static_cast<int>(n[0]), static_cast<int>(n[1]), static_cast<int>(n[2]));
     return true;
 }
 
-/// Sets one option; what it expects when the value is bad, "" when all is well, null for an unknown
-/// name.
-const char* setOption(VoxelOptions& options, std::string_view name, std::string_view value)
+bool setOverlap(VoxelOptions& o, const std::string& text)
 {
-    if (name == "spacing") {
-        glm::dvec3 v;
-        if (!parseTriple(value, v) || !(v.x > 0.0 && v.y > 0.0 && v.z > 0.0))
-            return "three positive numbers, x,y,z";
-        options.spacing = v;
-    } else if (name == "origin") {
-        glm::dvec3 v;
-        if (!parseTriple(value, v)) return "three numbers, x,y,z";
-        options.origin = v;
-    } else if (name == "range") {
-        glm::dvec2 v;
-        if (!core::parseNumbers(value, &v.x, 2) || !(v.x < v.y) || !std::isfinite(v.y - v.x))
-            return "two rising numbers, low,high";
-        options.range = v;
-    } else if (name == "brick") {
-        glm::ivec3 v;
-        if (!parseBrick(value, v)) return "one or three numbers of samples from 2 to 65536";
-        options.brick = v;
-    } else if (name == "unit") {
-        double v = 0.0;
-        if (!core::parseNumber(value, v) || !(v > 0.0) || !std::isfinite(v))
-            return "a positive number";
-        options.unit = v;
-    } else if (name == "table") {
-        if (value.empty()) return "a file name";
-        options.table = std::string(value);
-    } else {
-        return nullptr;
+    std::int64_t n = 0;
+    if (!core::parseInteger(text, n) || n < 0 || n > 1024) return false;
+    o.overlap = static_cast<int>(n);
+    return true;
+}
+
+bool setTable(VoxelOptions& o, const std::string& text)
+{
+    if (!text.empty()) o.table = text;
+    return !text.empty();
+}
+
+bool setRamp(VoxelOptions& o, const std::string& text)
+{
+    glm::dvec3 v(0.0, 0.0, 1.0);
+    const auto count = core::splitText(text, ',').size();
+    if (count < 2 || count > 3 || !core::parseNumbers(text, &v.x, int(count))) return false;
+    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !(v.z >= 0.0 && v.z <= 1.0)) return false;
+    o.ramp = v;
+    return true;
+}
+
+// Anatomical letters, as in NRRD and ITK: where the axis points. Object x is left, y posterior, z
+// up.
+bool setOrientation(VoxelOptions& o, const std::string& text)
+{
+    static const std::string letters = "LRPASI";
+    glm::dmat3 axes(0.0);
+    bool taken[3] = {};
+    if (text.size() != 3) return false;
+    for (int i = 0; i < 3; ++i) {
+        const auto at = letters.find(
+            static_cast<char>(std::toupper(static_cast<unsigned char>(text[std::size_t(i)]))));
+        if (at == std::string::npos || taken[at / 2]) return false;
+        taken[at / 2] = true;
+        axes[i][static_cast<int>(at / 2)] = at % 2 == 0 ? 1.0 : -1.0;
     }
-    return "";
+    o.axes = axes;
+    return true;
+}
+
+const std::vector<Row>& rows()
+{
+    static const std::vector<Row> table{
+        {"spacing", "three positive numbers, x,y,z", "x,y,z",
+         "object units between samples; the file's, or 1,1,1", setSpacing},
+        {"origin", "three numbers, x,y,z", "x,y,z",
+         "object position of the first sample; the file's, or 0,0,0", setOrigin},
+        {"orientation", "three letters of L or R, P or A, S or I", "LPS",
+         "where the axes of the voxels point: Left or Right, Posterior or Anterior, Superior or "
+         "Inferior; object axes are LPS",
+         setOrientation},
+        {"range", "two rising numbers, low,high", "low,high",
+         "data values at the ends of the table's domain", setRange},
+        {"brick", "one or three numbers of samples from 2 to 65536", "n or x,y,z",
+         "samples per axis of a brick; 256", setBrick},
+        {"overlap", "a number of samples from 0 to 1024", "n",
+         "samples that bricks share at least; more where light or cubic interpolation need it",
+         setOverlap},
+        {"table", "a file name", "file",
+         "lookup table, .lut or .tf, beside the volume or on OSG's data path", setTable},
+        {"ramp", "centre,width or centre,width,opacity with an opacity from 0 to 1",
+         "centre,width[,opacity]",
+         "a white table instead, that rises about a fraction of the range", setRamp},
+    };
+    return table;
+}
+
+Status unexpected(const core::Option& option, const std::string& expected)
+{
+    return {ErrorCode::VALUE_INVALID,
+            "option " + option.name + " is \"" + option.value + "\", expected " + expected};
+}
+
+Status setOption(VoxelOptions& options, const core::Option& option)
+{
+    const auto row = std::find_if(rows().begin(), rows().end(),
+                                  [&option](const Row& r) { return option.name == r.name; });
+    const AppearanceProperty* property = findAppearanceOption(option.name);
+    if (row == rows().end() && !property) {
+        options.foreign.push_back(option.name);
+        return {};
+    }
+    if (!option.closed) return unexpected(option, "a closing quotation mark");
+    if (!property) {
+        if (row->set(options, option.value)) return {};
+        return unexpected(option, row->expected);
+    }
+    const Result<AppearanceProperty::Values> values =
+        parseAppearanceValues(*property, option.value);
+    if (!values.ok()) return {values.status.code, "option " + values.status.text};
+    options.properties.emplace_back(property, *values);
+    return {};
 }
 
 } // namespace
@@ -76,26 +176,31 @@ std::string VoxelOptions::voxelText() const
     if (origin) add("origin", core::formatTriple(*origin));
     if (range) add("range", core::formatNumber(range->x) + "," + core::formatNumber(range->y));
     if (brick) add("brick", core::formatTriple(*brick));
+    if (overlap) add("overlap", std::to_string(*overlap));
     return text;
+}
+
+bool VoxelOptions::has(const char* option) const
+{
+    return std::any_of(properties.begin(), properties.end(),
+                       [option](const auto& p) { return std::string(option) == p.first->option; });
+}
+
+std::vector<VolumeOption> voxelOptionHelp()
+{
+    std::vector<VolumeOption> help;
+    for (const Row& row : rows())
+        help.push_back({row.name, row.values, row.help});
+    for (const AppearanceProperty& p : appearanceProperties())
+        help.push_back({p.option, appearanceValueText(p), p.help});
+    return help;
 }
 
 Result<VoxelOptions> parseVoxelOptions(const std::string& text)
 {
     VoxelOptions options;
-    for (const std::string_view word : core::splitBlanks(text)) {
-        const std::size_t equals = word.find('=');
-        const std::string_view name = word.substr(0, equals);
-        const std::string_view value =
-            equals == std::string_view::npos ? std::string_view() : word.substr(equals + 1);
-        const char* wrong = setOption(options, name, value);
-        if (!wrong)
-            return Status(ErrorCode::VALUE_INVALID,
-                          "option \"" + std::string(word) +
-                              "\" is none of spacing=, origin=, range=, brick=, unit=, table=");
-        if (*wrong)
-            return Status(ErrorCode::VALUE_INVALID, "option " + std::string(name) + " is \"" +
-                                                        std::string(value) + "\", not " + wrong);
-    }
+    for (const core::Option& option : core::splitOptions(text))
+        if (Status status = setOption(options, option); !status.ok()) return status;
     return options;
 }
 

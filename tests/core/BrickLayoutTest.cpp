@@ -162,3 +162,23 @@ TEST(BrickLayout, FindsTheBrickOfAPosition)
         }
     EXPECT_EQ(BrickLayout().brickAt(glm::dvec3(0.0)), -1);
 }
+
+TEST(BrickLayout, ASliceIsAsThickAsTheDistanceToANextOne)
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 size(20);
+        size[axis] = 1;
+        const BrickLayout layout = *BrickLayout::create(size, glm::ivec3(8), 1);
+        EXPECT_EQ(layout.extent().min[axis], -0.5);
+        EXPECT_EQ(layout.extent().max[axis], 0.5);
+        EXPECT_EQ(layout.extent().max[(axis + 1) % 3], 19.0);
+        double volume = 0.0;
+        for (std::int64_t i = 0; i < layout.brickCount(); ++i) {
+            const glm::dvec3 s = layout.brick(i).clipBox.size();
+            volume += s.x * s.y * s.z;
+            EXPECT_EQ(layout.brick(i).samples.size()[axis], 1);
+            EXPECT_EQ(layout.brickAt(layout.brick(i).clipBox.center()), i);
+        }
+        EXPECT_NEAR(volume, 19.0 * 19.0, 1e-9);
+    }
+}

@@ -40,6 +40,25 @@ TEST(Text, Splits)
     EXPECT_TRUE(splitBlanks(" \n").empty());
 }
 
+TEST(Text, OptionsMayBeQuoted)
+{
+    const auto text = [](const std::string& options) {
+        std::string result;
+        for (const Option& o : splitOptions(options))
+            result += "[" + o.name + (o.hasValue ? "=" : "") + o.value + (o.closed ? "]" : "|");
+        return result;
+    };
+    EXPECT_EQ("[a=1][b=][c]", text(" a=1  b= c\t"));
+    EXPECT_EQ("[table=my table.lut][x=2]", text("table=\"my table.lut\" x=2"));
+    EXPECT_EQ("[table=it's][y=a\"b]", text("table=\"it's\" y='a\"b'"));
+    EXPECT_EQ("[table=my table.lut][z]", text("'table=my table.lut' z"));
+    EXPECT_EQ("[t=no end x=1|", text("t=\"no end x=1"));
+    EXPECT_EQ("[o=O'Brien]", text("o=O'Brien")); // within a word it is a letter like any other
+    EXPECT_EQ("[=v][a==b]", text("=v a==b"));
+    EXPECT_EQ("", text(" \n"));
+    EXPECT_EQ("[|", text("\""));
+}
+
 TEST(Text, FormattedNumbersReadBack)
 {
     for (const double v : {0.1, 1.0 / 3.0, -5e-324, 1.7976931348623157e308, 1e21}) {

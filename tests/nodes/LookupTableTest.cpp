@@ -207,3 +207,52 @@ TEST(LookupTableFile, MissingAndUnwritable)
     osg::ref_ptr<LookupTable> table = new LookupTable;
     EXPECT_EQ(ErrorCode::FILE_UNREADABLE, writeLookupTable(*table, "/no_such_folder/a.lut").code);
 }
+
+TEST(LookupTableFile, TablesOfOthersAreCalledByTheirName)
+{
+    std::string imageJ(768, '\0');
+    for (std::size_t i = 0; i < 256; ++i)
+        imageJ[i] = static_cast<char>(i);
+    const struct
+    {
+        const char* name;
+        std::string text;
+        const char* called;
+    } cases[] = {
+        {"p.json",
+         "[\n{\n\"ColorSpace\": \"RGB\", \"Name\": \"X\",\n\"RGBPoints\": [0, 0, 0, 0, 1, 1, 1, "
+         "1]\n}\n]",
+         "ParaView colour map (JSON)"},
+        {"p.xml",
+         "<ColorMaps>\n<ColorMap name=\"a\"><Point x=\"0\" o=\"1\" r=\"0\" g=\"0\" "
+         "b=\"0\"/></ColorMap>",
+         "ParaView colour map (XML)"},
+        {"s.vp",
+         "1\n1\n0.2\n1\n0\n10 -3024 0 -86.9767 0 45.3791 0.169643 139.919 0.589286 347.907 "
+         "0.607143\n",
+         "3D Slicer"},
+        {"s.vp.json", "{\"@schema\": \"x\", \"volumeProperties\": []}", "3D Slicer (JSON)"},
+        {"s.ctbl", "# Color table file /tmp/a.ctbl\n# 2 values\n0 background 0 0 0 0\n",
+         "colour table of 3D Slicer"},
+        {"l.txt",
+         "# ITK-SnAP Label Description File\n    1  255    0    0        1  1  1    \"Label 1\"\n",
+         "ITK-SNAP"},
+        {"a.am", "# AmiraMesh BINARY-LITTLE-ENDIAN 2.1\ndefine Lattice 256\n", "Amira"},
+        {"i.lut", imageJ, "ImageJ"},
+        {"b.lut", std::string("\x89PNG\0\0\0\0", 8), "no text"},
+        {"j.lut", "{}", "JSON"},
+        {"x.lut", "\xEF\xBB\xBF<a/>", "XML"},
+    };
+    for (const auto& c : cases) {
+        const auto table = readLookupTable(write(c.name, c.text));
+        ASSERT_FALSE(table.ok()) << c.name;
+        EXPECT_EQ(ErrorCode::NOT_SUPPORTED, table.status.code) << c.name;
+        EXPECT_NE(std::string::npos, table.status.text.find(c.called)) << table.status.text;
+        EXPECT_NE(std::string::npos, table.status.text.find(c.name)) << table.status.text;
+        EXPECT_NE(std::string::npos, table.status.text.find(".lut")) << table.status.text;
+    }
+    // What is nobody's keeps the message of what is wrong in it.
+    const auto bad = readLookupTable(write("bad.lut", "0 1 2\n"));
+    EXPECT_EQ(ErrorCode::VALUE_INVALID, bad.status.code);
+    EXPECT_NE(std::string::npos, bad.status.text.find("line 1"));
+}

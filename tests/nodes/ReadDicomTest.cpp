@@ -1,7 +1,9 @@
 // DICOM files, made here element by element.
 #include <osgVolumizer/ReadVoxels.h>
+#include <osgVolumizer/VolumeGeometry.h>
 #include <osgVolumizer/core/voxels/VoxelData.h>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,6 +43,7 @@ struct Dicom
     int columns = 4, rows = 3, frames = 1;
     int allocated = 16, stored = 16, highBit = 15, representation = 0;
     std::string slope, intercept, spacing, thickness, position, instance;
+    std::string orientation = "1\\0\\0\\0\\1\\0";
     std::string syntax = "1.2.840.10008.1.2.1";
     std::string pixels;
     std::string before; ///< more elements, in front of the image's own
@@ -64,7 +67,7 @@ struct Dicom
         meta = element(2, 0, "UL", number32(static_cast<std::uint32_t>(meta.size())), false) + meta;
         std::string body = before + add(0x18, 0x50, "DS", thickness) +
                            add(0x20, 0x13, "IS", instance) + add(0x20, 0x32, "DS", position);
-        if (!position.empty()) body += add(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0");
+        if (!position.empty()) body += add(0x20, 0x37, "DS", orientation);
         body += add(0x28, 2, "US", number16(1));
         if (frames != 1) body += add(0x28, 8, "IS", std::to_string(frames));
         body += add(0x28, 0x10, "US", number16(rows)) + add(0x28, 0x11, "US", number16(columns)) +
@@ -223,6 +226,43 @@ TEST_F(ReadDicom, ASeriesIsSortedAlongThePatient)
     // The option string has the last word.
     osg::ref_ptr<osgDB::Options> options = new osgDB::Options("spacing=2,2,2");
     EXPECT_EQ(osg::Vec3d(2, 2, 2), (*readVoxels(path(""), options.get()))->getSpacing());
+}
+
+TEST_F(ReadDicom, AxesPointWhereTheHeaderSays)
+{
+    const auto axes = [&](const std::string& orientation) {
+        file.position = "1\\2\\3";
+        file.orientation = orientation;
+        const auto voxels = readVoxels(write("a.dcm", file.bytes()));
+        EXPECT_TRUE(voxels.ok()) << voxels.status.text;
+        return voxels.ok() ? (*voxels)->getSource()->describe().axes : glm::dmat3(0.0);
+    };
+    EXPECT_EQ(axes("1\\0\\0\\0\\1\\0"), glm::dmat3(1.0));
+    // Sagittal: columns go backwards, rows down, and so slices to the right.
+    const glm::dmat3 sagittal(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, -1), glm::dvec3(-1, 0, 0));
+    EXPECT_EQ(axes("0\\1\\0\\0\\0\\-1"), sagittal);
+    // Not quite of unit length, nor at a right angle: the nearest rotation.
+    const glm::dmat3 rough = axes("0.0\\0.999\\0.0001\\0.0\\0.0002\\-1.001");
+    EXPECT_NEAR(glm::length(rough[1]), 1.0, 1e-12);
+    EXPECT_NEAR(glm::dot(rough[0], rough[1]), 0.0, 1e-12);
+    EXPECT_NEAR(rough[2].x, -1.0, 1e-3);
+    // What are no two directions is no orientation.
+    for (const char* bad :
+         {"0\\0\\0\\0\\1\\0", "1\\0\\0\\1\\0\\0", "1\\0\\0", "1e300\\0\\0\\0\\1e300\\0"})
+        EXPECT_EQ(axes(bad), glm::dmat3(1.0)) << bad;
+}
+
+TEST_F(ReadDicom, ASliceIsAsThickAsItsHeaderSays)
+{
+    file.spacing = "0.5\\0.5";
+    file.thickness = "3";
+    const auto one = readVoxels(write("a.dcm", file.bytes()));
+    ASSERT_TRUE(one.ok()) << one.status.text;
+    EXPECT_EQ((*one)->getSize().z(), 1);
+    EXPECT_EQ((*one)->getSpacing(), osg::Vec3d(0.5, 0.5, 3.0));
+    const osg::BoundingBox box = VolumeGeometry::createBox(**one)->getBoundingBox();
+    EXPECT_EQ(box.zMin(), -1.5f);
+    EXPECT_EQ(box.zMax(), 1.5f);
 }
 
 TEST_F(ReadDicom, SequencesAreSkippedWhateverTheirForm)

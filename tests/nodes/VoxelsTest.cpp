@@ -383,3 +383,29 @@ TEST(MemoryVoxelSource, DeepCopyHasItsOwnVoxels)
     EXPECT_NE(source->data(), deep->data());
     EXPECT_EQ(42, static_cast<std::uint16_t*>(deep->data())[7]);
 }
+
+TEST(Voxels, AnOverlapThatIsRequiredIsRaisedOnly)
+{
+    VoxelSource::Description description;
+    description.size = glm::ivec3(40);
+    osg::ref_ptr<MemoryVoxelSource> source = new MemoryVoxelSource;
+    ASSERT_TRUE(source->allocate(description));
+    osg::ref_ptr<Voxels> voxels = new Voxels(source);
+    // One brick: nothing is read again for it.
+    const unsigned modified = voxels->getModifiedCount(0);
+    EXPECT_TRUE(voxels->requireOverlap(3).ok());
+    EXPECT_EQ(3, voxels->getOverlap());
+    EXPECT_EQ(modified, voxels->getModifiedCount(0));
+    ASSERT_TRUE(voxels->setBrickSize({10, 10, 10}));
+    EXPECT_TRUE(voxels->requireOverlap(1).ok());
+    EXPECT_EQ(3, voxels->getOverlap());
+    EXPECT_TRUE(voxels->requireOverlap(5).ok());
+    EXPECT_EQ(5, voxels->getOverlap());
+    EXPECT_EQ(5, voxels->getLayout().brick(0).samples.max.x -
+                     voxels->getLayout().brick(1).samples.min.x);
+    // Bricks that are too small keep what they have, and nobody is told twice.
+    clearLastError();
+    EXPECT_FALSE(voxels->requireOverlap(10).ok());
+    EXPECT_EQ(5, voxels->getOverlap());
+    EXPECT_TRUE(getLastError().ok());
+}

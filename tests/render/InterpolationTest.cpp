@@ -171,12 +171,32 @@ TEST_F(Interpolation, CubicWithTooLittleOverlapSaysSoAndIsLinear)
     volume->setName("too little");
     const FloatImage linear = support::renderScene(volume, view(33));
     volume->setInterpolation(VolumeAppearance::CUBIC);
+    ASSERT_TRUE(bricks->setOverlap(1));
     clearLastError();
     const FloatImage cubic = support::renderScene(volume, view(33));
     EXPECT_EQ(support::compare(cubic, linear).maximum, 0.0);
     EXPECT_EQ(getLastError().code, ErrorCode::NOT_SUPPORTED);
     EXPECT_NE(getLastError().text.find("too little"), std::string::npos);
     EXPECT_NE(getLastError().text.find("overlap is 1"), std::string::npos);
+}
+
+TEST_F(Interpolation, TheOverlapThatIsNeededIsChosen)
+{
+    for (const bool voxelsFirst : {true, false}) {
+        osg::ref_ptr<Voxels> bricks = makeVoxels(glm::ivec3(33), bumps);
+        bricks->setBrickSize({17, 17, 17});
+        osg::ref_ptr<VolumeAppearance> volume = makeVolume(bricks);
+        if (!voxelsFirst) volume->setVoxels(nullptr);
+        volume->setInterpolation(VolumeAppearance::CUBIC);
+        volume->setShading(true);
+        volume->setVoxels(bricks);
+        EXPECT_EQ(bricks->getOverlap(), 5);
+        clearLastError();
+        const FloatImage many = support::renderScene(volume, support::joining(view(33), false));
+        EXPECT_TRUE(getLastError().ok()) << getLastError().text;
+        volume->setVoxels(makeVoxels(glm::ivec3(33), bumps));
+        EXPECT_LT(support::compare(many, support::renderScene(volume, view(33))).rmse, 1e-4);
+    }
 }
 
 } // namespace

@@ -179,6 +179,7 @@ TEST_F(Joining, GradientsReachIntoTheNextBrick)
     // An overlap of one sample, which is too little for gradients of bricks by themselves.
     osg::ref_ptr<VolumeAppearance> volume = makeBricks(bumps, smoothPoints(0.5), 1);
     volume->setShading(true);
+    ASSERT_TRUE(volume->getVoxels()->setOverlap(1));
     const FloatImage image = support::renderScene(volume, view());
     EXPECT_GT(support::coveredPixels(image, 0.2f).count(), 1000u);
     ASSERT_TRUE(volume->getVoxels()->setBrickSize({SIZE, SIZE, SIZE}));

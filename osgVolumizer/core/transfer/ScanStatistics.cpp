@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 namespace osgVolumizer {
@@ -10,6 +11,13 @@ namespace core {
 namespace {
 
 using Histogram = std::vector<std::uint64_t>;
+
+/// From the background on: brightness rises evenly, as it does for people who see few colours.
+const glm::dvec3 WARM[] = {{0.24, 0.08, 0.10},
+                           {0.62, 0.25, 0.18},
+                           {0.88, 0.52, 0.33},
+                           {0.97, 0.79, 0.55},
+                           {1.00, 0.97, 0.90}};
 
 double total(const Histogram& h)
 {
@@ -41,14 +49,20 @@ int farBin(const Histogram& h, int start, int step)
     return std::min(std::max(b, 0), ScanStatistics::BINS - 1);
 }
 
-/// Mean over a histogram of a ramp that is 0 at fraction `from` and 1 at `to`.
-double meanRamp(const Histogram& h, double from, double to)
+/// Opacity along the foreground, over the highest: what begins to show does so soon.
+double rise(double along)
+{
+    return along * (2.0 - along);
+}
+
+/// Mean over a histogram of a rise that is 0 at fraction `from` and 1 at `to`.
+double meanRise(const Histogram& h, double from, double to)
 {
     double sum = 0.0;
     for (std::size_t b = 0; b < h.size(); ++b) {
         const double value = (static_cast<double>(b) + 0.5) / ScanStatistics::BINS;
         const double ramp = std::min(std::max((value - from) / (to - from), 0.0), 1.0);
-        sum += ramp * static_cast<double>(h[b]);
+        sum += rise(ramp) * static_cast<double>(h[b]);
     }
     const double all = total(h);
     return all > 0.0 ? sum / all : 0.0;
@@ -112,7 +126,7 @@ int otsuThreshold(const std::vector<std::uint64_t>& histogram)
     return first < 0 ? -1 : (first + last) / 2;
 }
 
-TransferFunction suggestTransferFunction(const ScanStatistics& statistics)
+TransferFunction suggestTransferFunction(const ScanStatistics& statistics, int voxelsPerSample)
 {
     const int threshold = otsuThreshold(statistics.all());
     // A single value: all of it is shown.
@@ -123,15 +137,18 @@ TransferFunction suggestTransferFunction(const ScanStatistics& statistics)
                              : farBin(statistics.all(), threshold + 1, 1);
     const double to = (far + (inverted ? 0.0 : 1.0)) / ScanStatistics::BINS;
     const glm::ivec3& size = statistics.volumeSize();
-    const double width = (static_cast<double>(size.x) + size.y + size.z) / 3.0;
+    const double width = voxelsPerSample * (static_cast<double>(size.x) + size.y + size.z) / 3.0;
     const double filled =
-        std::max(meanRamp(statistics.inner(), from, to), meanRamp(statistics.all(), from, to));
-    const double extinction = 4.0 / std::max(filled * width, 1e-3);
+        std::max(meanRise(statistics.inner(), from, to), meanRise(statistics.all(), from, to));
+    const double extinction = 12.0 / std::max(filled * width, 1e-3);
     const double opacity = std::min(std::max(opacityFromExtinction(extinction, 1.0), 0.002), 0.95);
-    const TransferFunction::Point dark{from, glm::dvec4(0.25, 0.25, 0.25, 0.0)};
-    const TransferFunction::Point bright{to, glm::dvec4(1.0, 1.0, 1.0, opacity)};
-    if (inverted) return *TransferFunction::create({bright, dark});
-    return *TransferFunction::create({dark, bright});
+    std::vector<TransferFunction::Point> points;
+    for (std::size_t i = 0; i < std::size(WARM); ++i) {
+        const double along = static_cast<double>(i) / (std::size(WARM) - 1);
+        points.push_back({from + along * (to - from), glm::dvec4(WARM[i], rise(along) * opacity)});
+    }
+    if (inverted) std::reverse(points.begin(), points.end());
+    return *TransferFunction::create(points);
 }
 
 } // namespace core

@@ -116,6 +116,11 @@ BrickPlace BrickLayout::brick(std::int64_t index) const
         const bool movedBack = _partial == PartialBricks::AVERAGE_UP && last;
         place.samples.min[axis] = movedBack ? _size[axis] - _brickSize[axis] : regular;
         place.samples.max[axis] = end;
+        if (_size[axis] == 1) {
+            place.clipBox.min[axis] = -0.5;
+            place.clipBox.max[axis] = 0.5;
+            continue;
+        }
         place.clipBox.min[axis] = c[axis] == 0 ? 0.0 : cutBefore(regular, _overlap);
         place.clipBox.max[axis] =
             last ? end - 1.0 : cutBefore(static_cast<double>(regular) + step, _overlap);
@@ -150,7 +155,7 @@ Box3d BrickLayout::extent() const
 {
     Box3d box;
     if (brickCount() == 0) return box;
-    box.min = glm::dvec3(0.0);
+    box.min = brick(0).clipBox.min;
     box.max = brick(brickCount() - 1).clipBox.max;
     return box;
 }

@@ -13,7 +13,9 @@ namespace core {
 struct BrickPlace
 {
     Box3i samples; ///< sample (i,j,k) range, half-open; neighbours share `overlap` samples
-    Box3d clipBox; ///< voxel frame; clip boxes of neighbours tile [0, N-1] without gap or overlap
+    /// Voxel frame. Clip boxes of neighbours tile [0, N-1] without gap or overlap; an axis of one
+    /// sample, a slice, is as thick as the distance to a next one would be: [-0.5, 0.5].
+    Box3d clipBox;
 };
 
 /// Selects what is done where the volume's size is no multiple of the brick's.

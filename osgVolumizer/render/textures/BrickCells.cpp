@@ -55,6 +55,11 @@ core::Box3d shownBox(const core::LayerRanges& layers, const core::BrickPlace& pl
     core::Box3d box;
     for (int axis = 0; axis < 3; ++axis) {
         const glm::dvec2 part = shownPart(layers.axis[axis], cubic, shows);
+        if (layers.axis[axis].size() == 1 && part.x < part.y) { // thicker than its samples
+            box.min[axis] = place.clipBox.min[axis];
+            box.max[axis] = place.clipBox.max[axis];
+            continue;
+        }
         box.min[axis] = place.samples.min[axis] + part.x;
         box.max[axis] = place.samples.min[axis] + part.y;
     }
