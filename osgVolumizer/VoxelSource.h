@@ -50,13 +50,13 @@ public:
     /// packed, in native byte order.
     virtual Status read(const core::Box3i& region, void* destination) const = 0;
     /// Lowest and highest value in a region where that is known without reading; else nothing.
-    virtual std::optional<std::pair<double, double>> valueRange(const core::Box3i& region) const
+    virtual std::optional<std::pair<double, double>> valueRange(const core::Box3i& /*region*/) const
     {
         return std::nullopt;
     }
     /// The samples of a region where they lie in memory as read() would write them; else an empty
     /// block. Saves the copy.
-    virtual VoxelBlock share(const core::Box3i& region) const { return {}; }
+    virtual VoxelBlock share(const core::Box3i& /*region*/) const { return {}; }
 
 protected:
     VoxelSource() = default;
