@@ -1,7 +1,26 @@
-# Sourced by tests/run.sh and examples/demo.sh: install_missing PACKAGE... installs those Debian
-# packages that are not there, and calls apt-get only if there are any.
+# Sourced by tests/run.sh, tests/bench/chart.sh and examples/demo.sh: the Debian packages that each
+# needs, and install_missing PACKAGE..., which installs those that are not there, and calls apt-get
+# only if there are any.
 
+# What the libraries, plugins and tools are built with; README names the same (a test compares them).
+#   openimageio-tools         Debian's CMake files of OpenImageIO refuse to be read where its programs
+#                             are missing, though nothing here calls them
+#   libegl-dev libopengl-dev  the render tool draws without a window; what it is linked with
+#   libegl-mesa0              EGL's driver, without which libegl-dev finds no device
 BUILD_PACKAGES="g++ cmake ninja-build libopenscenegraph-dev libglm-dev libopenimageio-dev openimageio-tools libegl-dev libopengl-dev libegl-mesa0"
+# What tests/run.sh needs on top.
+#   openscenegraph xvfb xauth             stock osgviewer on a virtual display
+#   clang-14 libclang-rt-14-dev           the fuzz targets
+#   pkg-config                            a program linked with what the .pc file says
+TEST_PACKAGES="libgtest-dev libgl1-mesa-dri openscenegraph xvfb xauth clang-14 libclang-rt-14-dev clang-format-14 git pkg-config"
+# What examples/demo.sh needs on top, and what else where there is no display.
+DEMO_PACKAGES="openscenegraph libgl1-mesa-dri"
+HEADLESS_DEMO_PACKAGES="xvfb imagemagick"
+# What tests/bench/chart.sh needs on top: GoogleTest, since benchmarks are among the tests, the peers
+# in OpenSceneGraph, and a display for VTK.
+CHART_PACKAGES="libgtest-dev libgl1-mesa-dri openscenegraph xvfb xauth python3"
+# Readers of .vtk and .vtu files, and two of the chart's peers; all goes without it.
+VTK_PACKAGES="libvtk9-dev"
 
 install_missing() {
     command -v dpkg-query >/dev/null || {

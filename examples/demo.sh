@@ -17,8 +17,8 @@ fi
 headless=no
 if [ -z "${DISPLAY:-}" ] || [ -n "${CI:-}" ]; then headless=yes; fi
 
-packages="$BUILD_PACKAGES openscenegraph libgl1-mesa-dri"
-[ $headless = yes ] && packages="$packages xvfb imagemagick"
+packages="$BUILD_PACKAGES $DEMO_PACKAGES"
+[ $headless = yes ] && packages="$packages $HEADLESS_DEMO_PACKAGES"
 install_missing $packages
 
 # A build folder that is there already keeps its settings.

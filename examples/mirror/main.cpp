@@ -6,13 +6,13 @@
 //   osgvolumizermirror SCENE PICTURE.png  without one
 
 #include <support/PictureFile.h>
+#include <support/ReadScene.h>
 #include <support/SceneRenderer.h>
 
 #include <osg/FrontFace>
 #include <osg/Geometry>
 #include <osg/Program>
 #include <osg/Texture2D>
-#include <osgDB/ReadFile>
 #include <osgViewer/Viewer>
 
 #include <cstdio>
@@ -112,11 +112,12 @@ int main(int argc, char** argv)
         std::fprintf(stderr, "usage: osgvolumizermirror SCENE [PICTURE.png]\n");
         return 2;
     }
-    const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(argv[1]);
-    if (!scene) {
-        std::fprintf(stderr, "%s could not be read\n", argv[1]);
+    const auto read = osgVolumizer::support::readScene(argv[1]);
+    if (!read.ok()) {
+        std::fprintf(stderr, "osgvolumizermirror: %s\n", read.status.text.c_str());
         return 1;
     }
+    const osg::ref_ptr<osg::Node>& scene = *read;
     const osg::ref_ptr<osg::Group> root = withMirror(scene);
     if (argc == 3) return drawPicture(root, scene->getBound(), argv[2]);
     osgViewer::Viewer viewer;

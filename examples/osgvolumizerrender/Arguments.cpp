@@ -110,13 +110,14 @@ const std::map<std::string, Handler>& handlers()
         {"--turn", [](Arguments& a, Words& w) { a.turnDegrees = w.number(-360.0, 360.0); }},
         {"-O", [](Arguments& a, Words& w) { a.readerOptions = w.text(); }},
         {"--help", [](Arguments& a, Words&) { a.help = true; }},
+        {"--version", [](Arguments& a, Words&) { a.version = true; }},
     };
     return table;
 }
 
 Status checkWhole(const Arguments& a)
 {
-    if (a.help) return Status();
+    if (a.help || a.version) return Status();
     if (a.scene.empty()) return invalid("No scene is named; see --help.");
     if (a.output.empty() && a.stats.empty())
         return invalid("Nothing is asked for: give --output, --stats, or both.");
@@ -198,6 +199,7 @@ Renders a scene without a window and writes the picture, the statistics, or both
   --ortho HALF_HEIGHT   parallel projection, half the picture's height in world units
   --background R G B A  premultiplied (0 0 0 0)
   -O STRING             options for the reader of SCENE, e.g. "spacing=1,1,1.5 table=bone.lut"
+  --version             the library's version
 
 What every volume of the scene gets instead of what it has:
 )";
@@ -209,7 +211,7 @@ What every volume of the scene gets instead of what it has:
         if (!osgVolumizer::findAppearanceOption(option.name))
             addRow(text, option.name + "=" + option.values, option.help);
     return text + R"(
-Lights and optimizer as in osgviewer. Exit code 0; 1 where the scene cannot be read, rendered or
-written; 2 for a wrong command line.
+Lights and optimizer as in osgviewer. Exit code 0; 1 where the scene, or a part of it, cannot be
+read, rendered or written; 2 for a wrong command line.
 )";
 }

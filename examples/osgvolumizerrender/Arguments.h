@@ -29,6 +29,7 @@ struct Arguments
     int frames = 1;
     double turnDegrees = 0.0; ///< from frame to frame
     bool help = false;
+    bool version = false;
 };
 
 /// Refuses unknown options, missing or surplus values, and values that make no sense, naming both.

@@ -4,9 +4,11 @@
 #include "StatsFile.h"
 
 #include <support/PictureFile.h>
+#include <support/ReadScene.h>
 #include <support/SceneRenderer.h>
 
-#include <osgDB/Registry>
+#include <osgVolumizer/Version.h>
+
 #include <osgUtil/Optimizer>
 
 #include <cmath>
@@ -77,13 +79,10 @@ void turn(support::SceneRenderer& renderer, const Arguments& arguments,
 
 Status run(const Arguments& arguments)
 {
-    osg::ref_ptr<osgDB::Options> readerOptions = new osgDB::Options(arguments.readerOptions);
-    osgDB::ReaderWriter::ReadResult read =
-        osgDB::Registry::instance()->readNode(arguments.scene, readerOptions.get());
-    osg::ref_ptr<osg::Node> scene = read.getNode();
-    if (!scene)
-        return Status(ErrorCode::FILE_UNREADABLE, "Cannot read a scene from '" + arguments.scene +
-                                                      "': " + read.statusMessage() + ".");
+    const Result<osg::ref_ptr<osg::Node>> read =
+        support::readScene(arguments.scene, arguments.readerOptions);
+    if (!read.ok()) return read.status;
+    const osg::ref_ptr<osg::Node>& scene = *read;
     Apply apply(arguments);
     scene->accept(apply);
     osgUtil::Optimizer().optimize(scene.get());
@@ -129,6 +128,10 @@ int main(int argc, char** argv)
     }
     if (arguments->help) {
         std::cout << usage();
+        return 0;
+    }
+    if (arguments->version) {
+        std::cout << "osgvolumizerrender " << getVersion() << "\n";
         return 0;
     }
     const Status status = run(*arguments);

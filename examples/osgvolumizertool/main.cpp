@@ -5,6 +5,7 @@
 #include "ProgressLine.h"
 
 #include <osgVolumizer/ReadVoxels.h>
+#include <osgVolumizer/Version.h>
 #include <osgVolumizer/WriteVoxels.h>
 #include <osgVolumizer/core/Text.h>
 
@@ -32,7 +33,7 @@ const char* const help =
       2D images of one size, a slice each: a folder (in natural order), a numbered pattern ("s%03d.png",
       "s###.png"), or the files one by one.
 
-Options: --quiet (no progress), --help.
+Options: --quiet (no progress), --help, --version.
 Exit status: 0 done, 1 a file cannot be read or written, 2 the command line is wrong.
 )";
 
@@ -119,6 +120,9 @@ int main(int argc, char** argv)
         arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i));
         if (option == "--help") {
             std::cout << help;
+            return DONE;
+        } else if (option == "--version") {
+            std::cout << "osgvolumizertool " << getVersion() << '\n';
             return DONE;
         } else if (option == "--quiet") {
             quiet = true;

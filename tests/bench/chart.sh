@@ -8,16 +8,15 @@ set -u -o pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
 . .ci/packages.sh
 
-install_missing $BUILD_PACKAGES libgtest-dev libegl-dev libgl1-mesa-dri openscenegraph xvfb xauth \
-    python3 || exit 1
-install_missing libvtk9-dev || echo "No VTK: its two ray casters are left out." >&2
+install_missing $BUILD_PACKAGES $CHART_PACKAGES || exit 1
+install_missing $VTK_PACKAGES || echo "No VTK: its two ray casters are left out." >&2
 
 # The same rasteriser for all. Remove this line to measure a graphics card (and start an X server on
 # it, for VTK).
 export LIBGL_ALWAYS_SOFTWARE=1
 
-cmake -S . -B build/chart -G Ninja -DCMAKE_BUILD_TYPE=Release -DOSGVOLUMIZER_BUILD_BENCH=ON \
-    -DOSGVOLUMIZER_BUILD_PLUGINS=OFF || exit 1
+cmake -S . -B build/chart -G Ninja -DCMAKE_BUILD_TYPE=Release -DOSGVOLUMIZER_BUILD_TESTS=ON \
+    -DOSGVOLUMIZER_BUILD_BENCH=ON -DOSGVOLUMIZER_BUILD_PLUGINS=OFF || exit 1
 cmake --build build/chart --target osgVolumizerChart || exit 1
 
 display=()

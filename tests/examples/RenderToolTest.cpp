@@ -1,3 +1,5 @@
+#include "RunProgram.h"
+
 #include <oracles/ClosedForms.h>
 #include <support/GLTest.h>
 #include <support/PictureFile.h>
@@ -9,10 +11,6 @@
 
 #include <osgDB/WriteFile>
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -22,25 +20,9 @@ using namespace osgVolumizer::support;
 
 namespace {
 
-struct Outcome
-{
-    int code = -1;
-    std::string text; ///< of both streams
-};
-
 Outcome runTool(const std::string& arguments)
 {
-    Outcome outcome;
-    const std::string command =
-        std::string(OSGVOLUMIZER_BINARY_DIR "/bin/osgvolumizerrender ") + arguments + " 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
-    if (!pipe) return outcome;
-    std::array<char, 256> buffer;
-    while (std::fgets(buffer.data(), buffer.size(), pipe))
-        outcome.text += buffer.data();
-    const int status = pclose(pipe);
-    if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
-    return outcome;
+    return runProgram("osgvolumizerrender", arguments);
 }
 
 class RenderToolGLTest : public GLTest

@@ -18,7 +18,11 @@ file(MAKE_DIRECTORY ${BINARY})
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${BINARY} -G Ninja -DCMAKE_PREFIX_PATH=${PREFIX}
     -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${flags}" "-DREADME=${README}")
 run(${CMAKE_COMMAND} --build ${BINARY})
-run(${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH ${BINARY}/consumer)
+set(environment ${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH --unset=OSG_LIBRARY_PATH)
+run(${environment} ${BINARY}/consumer)
+if(EXISTS ${BINARY}/reader)
+  run(${environment} ${BINARY}/reader)
+endif()
 
 if(WITHOUT_OSG)
   run(ninja -C ${BINARY} -t deps)

@@ -17,7 +17,13 @@ set(expected ${headers} ${core_headers}
   ${LIBRARIES}/libosgVolumizer.so ${LIBRARIES}/libosgVolumizerCore.so
   ${LIBRARIES}/cmake/osgVolumizer/osgVolumizerConfig.cmake
   ${LIBRARIES}/${PLUGINS}/osgdb_serializers_osgvolumizer.so ${LIBRARIES}/${PLUGINS}/osgdb_volume.so
-  bin/osgvolumizerrender bin/osgvolumizertool)
+  ${LIBRARIES}/pkgconfig/osgVolumizer.pc include/osgVolumizer/Version.h
+  bin/osgvolumizerrender bin/osgvolumizertool
+  share/doc/osgVolumizer/README.md share/doc/osgVolumizer/CHANGELOG.md share/doc/osgVolumizer/LICENSE)
+# All data, since scenes name the files beside them.
+file(GLOB data RELATIVE ${SOURCE}/data ${SOURCE}/data/*)
+list(TRANSFORM data PREPEND share/osgVolumizer/)
+list(APPEND expected ${data})
 foreach(file ${expected})
   if(NOT EXISTS ${PREFIX}/${file})
     message(SEND_ERROR "Not installed: ${file}")
@@ -47,7 +53,8 @@ foreach(binary ${binaries})
 endforeach()
 
 # An exported target names no folder of the machine that it was built on.
-file(GLOB package ${PREFIX}/${LIBRARIES}/cmake/osgVolumizer/*.cmake)
+file(GLOB package ${PREFIX}/${LIBRARIES}/cmake/osgVolumizer/*.cmake
+     ${PREFIX}/${LIBRARIES}/pkgconfig/*.pc)
 foreach(file ${package})
   file(READ ${file} text)
   string(FIND "${text}" "${SOURCE}" found)

@@ -1,9 +1,10 @@
-// A scene with a volume, written and read back through the installed plugins.
+// A scene with a volume, written and read back through the installed plugins, which lie beside the
+// library: nothing here says where.
+#include <osgVolumizer/Version.h>
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/VolumeGeometry.h>
 
 #include <osgDB/ReadFile>
-#include <osgDB/Registry>
 #include <osgDB/WriteFile>
 
 #include <cstdio>
@@ -21,7 +22,8 @@ int fail(const std::string& text)
 
 int main()
 {
-    osgDB::Registry::instance()->getLibraryFilePathList().push_front(PLUGIN_ROOT);
+    if (std::string(osgVolumizer::getVersion()) != OSGVOLUMIZER_VERSION)
+        return fail("The header and the library differ in version");
 
     osg::ref_ptr<osgVolumizer::MemoryVoxelSource> source = new osgVolumizer::MemoryVoxelSource;
     osgVolumizer::VoxelSource::Description description;

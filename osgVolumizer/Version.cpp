@@ -1,0 +1,10 @@
+#include <osgVolumizer/Version.h>
+
+namespace osgVolumizer {
+
+const char* getVersion()
+{
+    return OSGVOLUMIZER_VERSION;
+}
+
+} // namespace osgVolumizer
