@@ -33,7 +33,7 @@ export LD_LIBRARY_PATH=$root/build/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 export OSG_FILE_PATH=$root/data${OSG_FILE_PATH:+:$OSG_FILE_PATH}
 
 if [ $headless = no ]; then
-    exec osgviewer --window 60 60 1024 768 "$scene"
+    exec osgviewer --samples 4 --window 60 60 1024 768 "$scene"
 fi
 
 picture=$root/build/demo.png
@@ -49,7 +49,7 @@ for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
 [ -s "$work/display" ] || { cat "$work/Xvfb.log" >&2; exit 1; }
 export DISPLAY=:$(cat "$work/display")
 
-osgviewer --window 0 0 1024 768 "$scene" >"$work/osgviewer.log" 2>&1 &
+osgviewer --samples 4 --window 0 0 1024 768 "$scene" >"$work/osgviewer.log" 2>&1 &
 viewer=$!
 
 # The picture is there when the screen is no longer of one colour and has stopped changing.

@@ -23,7 +23,7 @@ if [ "${1:-}" = --check ]; then
 fi
 
 . .ci/packages.sh
-install_missing $BUILD_PACKAGES libgl1-mesa-dri
+install_missing $BUILD_PACKAGES $DEMO_PACKAGES
 if [ ! -e build/CMakeCache.txt ]; then
     cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DOSGVOLUMIZER_BUILD_TESTS=OFF
 fi

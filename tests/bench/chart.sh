@@ -22,5 +22,12 @@ cmake --build build/chart --target osgVolumizerChart || exit 1
 display=()
 [ -n "${DISPLAY:-}" ] || display=(xvfb-run -a -s "-screen 0 1280x1024x24")
 "${display[@]}" build/chart/bin/osgVolumizerChart --csv build/chart/chart.csv "$@" || exit 1
+# What was measured, and on what, for the chart to say.
+{
+    echo "# Commit $(git rev-parse --short HEAD 2>/dev/null || echo unknown), $(date -u +%F); $(nproc) cores,"
+    echo "# ${LIBGL_ALWAYS_SOFTWARE:+Mesa's software rasteriser; }512 x 512 pixels, 128^3 voxels"
+    cat build/chart/chart.csv
+} >build/chart/run.csv
+mv build/chart/run.csv build/chart/chart.csv
 python3 tests/bench/chart.py build/chart/chart.csv build/chart || exit 1
 echo "build/chart/chart.svg  build/chart/chart.md  build/chart/chart.csv"

@@ -322,7 +322,7 @@ TEST_F(ReadVoxels, BadOptionsAreNamed)
     for (const char* bad :
          {"spacing=1,1", "spacing=1,0,1", "spacing=1,nan,1", "spacing=", "origin=0,0,inf",
           "origin=a,0,0", "range=5,5", "range=1", "range=nan,1", "range=-1e308,1e308", "brick=1",
-          "brick=1e9", "brick=8,8", "unit=0", "unit=-1", "unit=x", "table="}) {
+          "brick=1e9", "brick=8,8", "unit=-1", "unit=x", "table="}) {
         const Status status = statusOf(file, bad);
         EXPECT_EQ(ErrorCode::VALUE_INVALID, status.code);
         const std::string option = std::string(bad).substr(0, std::string(bad).find('='));
@@ -330,8 +330,16 @@ TEST_F(ReadVoxels, BadOptionsAreNamed)
         EXPECT_TRUE(names(status, "option " + option + " is \"" + value + "\"")) << status.text;
         EXPECT_TRUE(names(status, "v.raw")) << status.text;
     }
-    EXPECT_TRUE(names(statusOf(file, "spacing=1,1,1 colour=red"), "\"colour=red\""));
-    EXPECT_TRUE(names(statusOf(file, "fast"), "\"fast\""));
+}
+
+TEST_F(ReadVoxels, OptionsOfOthersAreLeftToThem)
+{
+    const std::string file = writeBytes("v.raw", std::string(64, 'x')) + ".4,4,4,uint8";
+    const auto voxels =
+        readVoxels(file, optionString("fast colour=red spacing=2,2,2 noRotation").get());
+    ASSERT_TRUE(voxels.ok()) << voxels.status.text;
+    EXPECT_EQ(osg::Vec3d(2, 2, 2), (*voxels)->getSpacing());
+    EXPECT_EQ("spacing=2,2,2", (*voxels)->getFileOptions());
 }
 
 TEST_F(ReadVoxels, BadRawNamesAreNamed)

@@ -88,6 +88,8 @@ TEST_F(SettingsInForce, TheVoxelsDecideAboutInterpolationAndRays)
 {
     ASSERT_TRUE(_appearance->getVoxels()->setBrickSize({5, 5, 5}));
     _appearance->setInterpolation(A::CUBIC);
+    EXPECT_EQ(settings().interpolation, A::CUBIC); // the overlap that it needs was chosen
+    ASSERT_TRUE(_appearance->getVoxels()->setOverlap(1));
     EXPECT_EQ(settings().interpolation, A::LINEAR);
     EXPECT_TRUE(hasReason("interpolation is linear"));
     fill(4);

@@ -24,6 +24,21 @@ if(EXISTS ${BINARY}/reader)
   run(${environment} ${BINARY}/reader)
 endif()
 
+# The program of the README: without a file that it finds it says so; on a virtual display it draws.
+if(README)
+  execute_process(COMMAND ${environment} ${BINARY}/readme nothing.tif WORKING_DIRECTORY ${BINARY}
+                  RESULT_VARIABLE result OUTPUT_QUIET ERROR_VARIABLE errors)
+  if(NOT result EQUAL 1 OR NOT errors MATCHES "^[^\n]*nothing.tif[^\n]*\n$")
+    message(FATAL_ERROR "The README's program, without a volume: ${result}\n${errors}")
+  endif()
+  get_filename_component(root ${README} DIRECTORY)
+  find_program(XVFB_RUN xvfb-run)
+  if(XVFB_RUN)
+    run(${environment} OSG_RUN_FRAME_COUNT=2 "OSG_WINDOW=0 0 200 150" LIBGL_ALWAYS_SOFTWARE=1
+        ASAN_OPTIONS=detect_leaks=0 ${XVFB_RUN} -a ${BINARY}/readme ${root}/data/head.tif)
+  endif()
+endif()
+
 if(WITHOUT_OSG)
   run(ninja -C ${BINARY} -t deps)
   if(NOT output MATCHES "core/geometry/TetraSet.h")

@@ -17,10 +17,13 @@ public:
     /// Slabs draw how many samples they take, added up in the red channel of a float framebuffer,
     /// instead of colours.
     bool countSamples = false;
+    /// What views that move reduce the number of samples by, whatever time they take; 0: by time.
+    double reduction = 0.0;
 
     ViewHooks() = default;
     ViewHooks(const ViewHooks& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY)
-        : osg::Object(o, op), skipping(o.skipping), joining(o.joining), countSamples(o.countSamples)
+        : osg::Object(o, op), skipping(o.skipping), joining(o.joining),
+          countSamples(o.countSamples), reduction(o.reduction)
     {
     }
     META_Object(osgVolumizer, ViewHooks);

@@ -92,7 +92,8 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
         const double reduction =
             renderData<AppearanceData>(appearance)
                 ->frameTimes.reduction(volume.viewId, visitor.getFrameStamp()->getFrameNumber(),
-                                       toClip, now, appearance.getTargetFrameTime());
+                                       toClip, now, appearance.getTargetFrameTime(),
+                                       ViewHooks::of(visitor.getCurrentCamera()).reduction);
         const ReducedSampling reduced = reducedSampling(reduction);
         volume.rayDistance = reduced.rayDistance;
         volume.sampling.periodVoxel *= reduced.stretch;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 using namespace osgVolumizer;
 using render::FrameTimes;
 
@@ -41,13 +43,43 @@ TEST(FrameTimes, AreReachedWhileMovingAndForgottenAtRest)
     }
     draw(6.1, 0.02);
     EXPECT_NEAR(reduction, moving, 0.1 * moving);
-    // A target that is out of reach has bounds; one that is easy changes nothing.
-    for (int i = 0; i < 60; ++i)
-        draw(7.0 + i, 1e-6);
-    EXPECT_EQ(reduction, render::FrameTimes::LARGEST);
+    // One that is easy changes nothing.
     for (int i = 0; i < 60; ++i)
         draw(70.0 + i, 10.0);
     EXPECT_EQ(reduction, 1.0);
+}
+
+// What a target that is out of reach comes to: frames take `fixedSeconds`, and `all` with all
+// samples.
+double reductionOutOfReach(double fixedSeconds, double all)
+{
+    FrameTimes times;
+    double now = 0.0, reduction = 1.0, sum = 0.0;
+    for (unsigned frame = 1; frame <= 200; ++frame) {
+        reduction = times.reduction(1, frame, at(frame), now, 1e-6);
+        now += fixedSeconds + all / reduction;
+        if (frame > 150) sum += std::log(reduction);
+    }
+    return std::exp(sum / 50.0);
+}
+
+TEST(FrameTimes, SamplesAreNotSavedInVain)
+{
+    // All of the time is theirs: as few as there may be. Hardly any is: few are saved. In between:
+    // until they take a quarter of what all else takes.
+    EXPECT_NEAR(reductionOutOfReach(0.0, 0.5), FrameTimes::LARGEST, 1.0);
+    EXPECT_LT(reductionOutOfReach(0.1, 0.01), 3.0);
+    const double between = reductionOutOfReach(0.02, 0.1);
+    EXPECT_GT(between, 10.0);
+    EXPECT_LT(between, 40.0);
+}
+
+TEST(FrameTimes, MayBeFixedForMovingViews)
+{
+    FrameTimes times;
+    EXPECT_EQ(times.reduction(1, 1, at(0), 0.0, 0.1, 27.0), 1.0);
+    EXPECT_EQ(times.reduction(1, 2, at(1), 0.1, 0.1, 27.0), 27.0);
+    EXPECT_EQ(times.reduction(1, 3, at(1), 0.2, 0.1, 27.0), 1.0);
 }
 
 TEST(FrameTimes, FramesAtRestTellWhereToBegin)
@@ -92,7 +124,7 @@ TEST(FrameTimes, OtherEyesOfAFrameGetTheSame)
     EXPECT_GT(left, 1.0);
     // A second look at the frame, from elsewhere and later, is no frame of its own.
     EXPECT_EQ(times.reduction(1, 3, at(2.1), 0.25, 0.01), left);
-    EXPECT_GT(times.reduction(1, 4, at(3), 0.3, 0.01), left);
+    EXPECT_NE(times.reduction(1, 4, at(3), 0.3, 0.01), left);
 }
 
 TEST(FrameTimes, ViewsDoNotKnowEachOther)
