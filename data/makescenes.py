@@ -291,14 +291,14 @@ def head(w):
     appearance(w, "head", "head.tif", (128, 128, 84), "head.lut", shading=True)
 
 
-def framed(w, name, radius, center):
-    """Viewers frame this sphere, whatever there is beyond it."""
+def framed(w, name, radius, center, children):
+    """A group whose bound is this sphere, for viewers to frame, whatever there is beyond it."""
     w.object("osg::LOD", name)
     w.line("CullingActive FALSE")
-    w.open("Children 1")
+    w.open(f"Children {children}")
     return lambda: (w.close(), w.line("CenterMode USER_DEFINED_CENTER"),
-                    w.line(f"UserCenter {numbers(center)} {radius:g}"), w.open("RangeList 1"),
-                    w.line("0 1e+30"), w.close(2))
+                    w.line(f"UserCenter {numbers(center)} {radius:g}"), w.open(f"RangeList {children}"),
+                    [w.line("0 1e+30") for _ in range(children)], w.close(2))
 
 
 def transform(w, name, rows):
@@ -306,24 +306,19 @@ def transform(w, name, rows):
     return lambda: (w.open("Matrix"), [w.line(r) for r in rows], w.close(2))
 
 
-def turned_center(center):
-    rows = [[float(n) for n in row.split()] for row in VIEW]
-    return [sum(center[i] * rows[i][c] for i in range(3)) for c in range(3)]
-
-
 def head_scene():
     w = Writer()
-    end_frame = framed(w, "framed", 60, turned_center((0.0, 3.0, -10.0)))
     end_view = transform(w, "view", VIEW)
     w.open("Children 1")
+    end_frame = framed(w, "framed", 60, (0.0, 3.0, -10.0), 1)
     end_upright = transform(w, "upright", UPRIGHT)
     w.open("Children 1")
     head(w)
     w.close()
     end_upright()
+    end_frame()
     w.close()
     end_view()
-    end_frame()
     w.save("head.osgt")
 
 
@@ -331,9 +326,9 @@ def mixed_scene():
     w = Writer()
     frame = cap_frame()
     rim = frame[3]
-    end_frame = framed(w, "framed", 62, turned_center((0.0, 5.0, -7.0)))
     end_view = transform(w, "view", VIEW)
-    w.open("Children 5")
+    w.open("Children 1")
+    end_frame = framed(w, "framed", 62, (0.0, 5.0, -7.0), 5)
     end_upright = transform(w, "upright", UPRIGHT)
     w.open("Children 2")
     head(w)
@@ -356,9 +351,9 @@ def mixed_scene():
     mesh(w, "screws", *joined(screws), (0.85, 0.72, 0.45), 1.0, 0.8, 70)
     mesh(w, "base", *revolved([(0.0, 3.0), (40.0, 3.0), (43.0, 0.0), (43.0, -3.0), (40.0, -5.0), (0.0, -5.0)],
                               (0.0, 12.0, -52.0), (0.0, 0.0, 1.0)), (0.55, 0.9, 0.8), 0.35, 0.8, 80)
+    end_frame()
     w.close()
     end_view()
-    end_frame()
     w.save("mixed.osgt")
 
 

@@ -21,7 +21,8 @@ namespace {
 
 constexpr double FRAME_TIME = 1.0 / 15.0; // seconds, while the view moves
 constexpr VolumeAppearance::Material MATERIAL{0.35, 0.95, 0.25, 24.0}; // brighter than the default
-constexpr double SMOOTH = 1.5; // see core::Preview::smoothness()
+constexpr double SLICE_OPACITY = 8.0; // thickness of a slice, in opacity units
+constexpr double SMOOTH = 1.5;        // see core::Preview::smoothness()
 
 /// The table, looked for beside the volume as well.
 Result<osg::ref_ptr<LookupTable>> readTable(const std::string& table, const std::string& volume,
@@ -84,14 +85,40 @@ Status setTable(VolumeAppearance& appearance, const io::VoxelOptions& said,
     return {};
 }
 
+// The axis of one sample, as of a single slice; -1 where there is none.
+int thinAxis(const Voxels& voxels)
+{
+    for (int axis : {2, 1, 0})
+        if (voxels.getSize()[axis] == 1) return axis;
+    return -1;
+}
+
 void setProperties(VolumeAppearance& appearance, const io::VoxelOptions& said,
                    const core::Preview* preview)
 {
+    const int thin = thinAxis(*appearance.getVoxels());
+    if (thin >= 0 && !said.has("unit"))
+        appearance.setOpacityUnit(appearance.getVoxels()->getSpacing()[thin] / SLICE_OPACITY);
     if (!said.has("frametime")) appearance.setTargetFrameTime(FRAME_TIME);
-    if (!said.has("shading")) appearance.setShading(preview && preview->smoothness() > SMOOTH);
+    if (!said.has("shading"))
+        appearance.setShading(preview && thin < 0 && preview->smoothness() > SMOOTH);
     appearance.setMaterial(MATERIAL);
     for (const auto& [property, values] : said.properties)
         property->set(appearance, values);
+}
+
+// Where the voxel axes point: as was said, or as the file says; but a slice faces the viewer, whose
+// home is at -y: columns to the right, rows down.
+glm::dmat3 axesOf(const Voxels& voxels, const io::VoxelOptions& said)
+{
+    if (said.axes) return *said.axes;
+    const int thin = thinAxis(voxels);
+    if (thin < 0) return voxels.getSource()->describe().axes;
+    glm::dmat3 axes(0.0);
+    axes[(thin + 1) % 3].x = 1.0;
+    axes[(thin + 2) % 3].z = -1.0;
+    axes[thin].y = 1.0;
+    return axes;
 }
 
 osg::Matrixd turn(const glm::dmat3& axes)
@@ -108,7 +135,7 @@ osg::BoundingSphere framed(const VolumeAppearance& appearance, const osg::Boundi
     const Voxels& voxels = *appearance.getVoxels();
     const osg::Vec3d spacing = voxels.getSpacing();
     const osg::Vec2d range = voxels.getRange();
-    const std::optional<core::Sphere> sphere = core::visibleSphere(
+    const std::optional<core::BoundingSphere> sphere = core::visibleSphere(
         preview.view(), rangeOf(voxels), *appearance.getLookupTable()->getNormalizedFunction(range),
         double(preview.step()) * glm::dvec3(spacing.x(), spacing.y(), spacing.z()));
     if (!sphere || !(sphere->radius < box.radius())) return box;
@@ -172,8 +199,7 @@ readVolume(const std::string& name, const osgDB::Options* options, const Progres
     const CallerReports quiet;
     if (Status status = setTable(*appearance, said, name, options, p); !status.ok()) return status;
     setProperties(*appearance, said, p);
-    const glm::dmat3 axes = said.axes.value_or((*voxels)->getSource()->describe().axes);
-    appearance->addChild(placed(*appearance, axes, p));
+    appearance->addChild(placed(*appearance, axesOf(**voxels, said), p));
     return appearance;
 }
 

@@ -67,8 +67,8 @@ TEST(TransferSuggestion, OpticalDepthDoesNotDependOnResolution)
                 f.evaluate(static_cast<double>(
                                v[static_cast<std::size_t>(x + n * (n / 2) + n * n * (n / 2))]))
                     .a);
-        EXPECT_GT(depth, 2.0) << n;
-        EXPECT_LT(depth, 6.0) << n;
+        EXPECT_GT(depth, 6.0) << n;
+        EXPECT_LT(depth, 13.0) << n;
     }
 }
 

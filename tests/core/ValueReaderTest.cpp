@@ -231,7 +231,9 @@ TEST(ValueReader, ReadsVolumesOfOneLayer)
     EXPECT_EQ(reader.value({1.5, 0, 0}), 2.5);
     EXPECT_EQ(reader.value({3.5, 0, 0}), 12.5);
     EXPECT_EQ(reader.value({4.0, 0, 0}), 16.0);
-    EXPECT_TRUE(std::isnan(reader.value({1.5, 0.1, 0})));
+    // A layer is as thick as the distance to a next one would be.
+    EXPECT_EQ(reader.value({1.5, 0.4, -0.5}), 2.5);
+    EXPECT_TRUE(std::isnan(reader.value({1.5, 0.6, 0})));
     EXPECT_EQ(reader.gradient({2.0, 0, 0}).x, 4.0);
 }
 

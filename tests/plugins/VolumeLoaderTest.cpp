@@ -218,6 +218,25 @@ TEST_F(VolumeLoader, DefaultsPlease)
     EXPECT_FALSE(unlit->getShading());
 }
 
+TEST_F(VolumeLoader, ASliceFacesTheViewer)
+{
+    const std::string file = writeBytes("v.raw", std::string(64, 'x') + std::string(64, 'y'));
+    for (const auto& [size, thin] :
+         {std::pair<const char*, int>{"16,8,1", 2}, {"8,1,16", 1}, {"1,8,16", 0}}) {
+        const auto slice = load(file + "." + size + ",uint8.volume", "spacing=2,2,2");
+        ASSERT_TRUE(slice.valid()) << size;
+        const osg::Matrixd turn =
+            osg::computeLocalToWorld(geometryOf(*slice).getParentalNodePaths()[0]);
+        osg::Vec3d axis;
+        axis[thin] = 1.0;
+        EXPECT_EQ(axis * turn, osg::Vec3d(0, 1, 0)) << size;
+        EXPECT_FALSE(slice->getShading());
+        EXPECT_EQ(slice->getOpacityUnit(), 0.25);
+        const osg::BoundingBox box = geometryOf(*slice).getBoundingBox();
+        EXPECT_EQ(box._max[thin] - box._min[thin], 2.0f);
+    }
+}
+
 TEST_F(VolumeLoader, OtherNamesAreLeftToOthers)
 {
     clearLastError();

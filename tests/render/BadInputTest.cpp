@@ -264,7 +264,7 @@ TEST_F(BadInput, StrangeTables)
 
 TEST_F(BadInput, TinyVolumes)
 {
-    // One sample along an axis has no extent; two have one cell.
+    // One sample along an axis is a layer; two have one cell.
     for (const glm::ivec3& size : {glm::ivec3(1), glm::ivec3(5, 5, 1), glm::ivec3(2)}) {
         osg::ref_ptr<Voxels> voxels = makeVoxels(size, [](const glm::dvec3&) { return 1.0; });
         osg::ref_ptr<VolumeAppearance> volume = makeVolume(voxels);
@@ -274,7 +274,7 @@ TEST_F(BadInput, TinyVolumes)
         support::SceneRenderer renderer(volume, options);
         const FloatImage image = renderer.render();
         EXPECT_EQ(renderer.glError(), 0u);
-        EXPECT_EQ(support::coveredPixels(image, 0.3f).count() > 200, size == glm::ivec3(2));
+        EXPECT_GT(support::coveredPixels(image, 0.3f).count(), 200u);
     }
 }
 

@@ -1,9 +1,9 @@
 #include "VisibleSphere.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -13,18 +13,29 @@ namespace core {
 
 namespace {
 
-constexpr int CELLS = 32;            // along each axis
+constexpr int MOST_CELLS = 32;       // along each axis
 constexpr double LEFT_OUT = 0.005;   // share of what shows, at each end
 constexpr double SHOWS_FULLY = 0.02; // opacity of a sample that counts as one
 
 struct Cells
 {
-    std::vector<double> weight = std::vector<double>(CELLS * CELLS * CELLS, 0.0);
+    glm::ivec3 count{0};
     glm::dvec3 size{1.0}; ///< object units
+    std::vector<double> weight;
 
-    glm::dvec3 center(int i) const
+    std::size_t index(const glm::ivec3& c) const
     {
-        return (glm::dvec3(i % CELLS, i / CELLS % CELLS, i / (CELLS * CELLS)) + 0.5) * size;
+        return static_cast<std::size_t>(c.x + count.x * (c.y + count.y * c.z));
+    }
+    glm::dvec3 center(const glm::ivec3& c) const { return (glm::dvec3(c) + 0.5) * size; }
+    template <class Visit>
+    void forEach(Visit visit) const
+    {
+        glm::ivec3 c;
+        for (c.z = 0; c.z < count.z; ++c.z)
+            for (c.y = 0; c.y < count.y; ++c.y)
+                for (c.x = 0; c.x < count.x; ++c.x)
+                    visit(c, weight[index(c)]);
     }
 };
 
@@ -45,57 +56,61 @@ Cells weigh(const VoxelView& voxels, const ValueRange& range, const TransferFunc
     const std::vector<double> weights = weightsOf(function);
     const double scale = double(weights.size() - 1) / (range.high - range.low);
     Cells cells;
-    cells.size = glm::dvec3(voxels.size) * spacing / double(CELLS);
+    cells.count = glm::min(voxels.size, glm::ivec3(MOST_CELLS));
+    cells.size = glm::dvec3(voxels.size) * spacing / glm::dvec3(cells.count);
+    cells.weight.assign(static_cast<std::size_t>(cells.count.x) * cells.count.y * cells.count.z,
+                        0.0);
     std::int64_t i = 0;
-    for (int z = 0; z < voxels.size.z; ++z)
-        for (int y = 0; y < voxels.size.y; ++y) {
-            const int row =
-                CELLS * (y * CELLS / voxels.size.y + CELLS * (z * CELLS / voxels.size.z));
-            for (int x = 0; x < voxels.size.x; ++x, ++i) {
+    glm::ivec3 p;
+    for (p.z = 0; p.z < voxels.size.z; ++p.z)
+        for (p.y = 0; p.y < voxels.size.y; ++p.y)
+            for (p.x = 0; p.x < voxels.size.x; ++p.x, ++i) {
                 const double v = (voxelValue(voxels, i) - range.low) * scale;
                 if (std::isnan(v)) continue;
                 const double entry = std::clamp(v, 0.0, double(weights.size() - 1));
-                cells.weight[static_cast<std::size_t>(row + x * CELLS / voxels.size.x)] +=
+                // At most four million samples in 32 cells: the product fits.
+                cells.weight[cells.index(p * cells.count / voxels.size)] +=
                     weights[static_cast<std::size_t>(entry + 0.5)];
             }
-        }
     return cells;
 }
 
-// The middle between where a share of all the weight lies below, and above.
-double middle(const std::array<double, CELLS>& weight, double total)
+// The middle between where a share of all the weight lies below, and above; in cells.
+double middle(const std::vector<double>& weight, double total)
 {
-    int low = 0, high = CELLS - 1;
-    for (double sum = weight[0]; sum < LEFT_OUT * total && low + 1 < CELLS;)
-        sum += weight[static_cast<std::size_t>(++low)];
-    for (double sum = weight[CELLS - 1]; sum < LEFT_OUT * total && high > low;)
-        sum += weight[static_cast<std::size_t>(--high)];
-    return 0.5 * (low + high + 1);
+    std::size_t low = 0, high = weight.size() - 1;
+    for (double sum = weight[low]; sum < LEFT_OUT * total && low < high;)
+        sum += weight[++low];
+    for (double sum = weight[high]; sum < LEFT_OUT * total && high > low;)
+        sum += weight[--high];
+    return 0.5 * static_cast<double>(low + high + 1);
 }
 
 } // namespace
 
-std::optional<Sphere> visibleSphere(const VoxelView& voxels, const ValueRange& range,
-                                    const TransferFunction& function, const glm::dvec3& spacing)
+std::optional<BoundingSphere> visibleSphere(const VoxelView& voxels, const ValueRange& range,
+                                            const TransferFunction& function,
+                                            const glm::dvec3& spacing)
 {
     const Cells cells = weigh(voxels, range, function, spacing);
-    std::array<double, CELLS> along[3] = {};
+    std::vector<double> along[3];
+    for (int axis = 0; axis < 3; ++axis)
+        along[axis].assign(static_cast<std::size_t>(cells.count[axis]), 0.0);
     double total = 0.0;
-    for (int i = 0; i < CELLS * CELLS * CELLS; ++i) {
-        const double w = cells.weight[static_cast<std::size_t>(i)];
-        const int place[] = {i % CELLS, i / CELLS % CELLS, i / (CELLS * CELLS)};
+    cells.forEach([&](const glm::ivec3& c, double weight) {
         for (int axis = 0; axis < 3; ++axis)
-            along[axis][static_cast<std::size_t>(place[axis])] += w;
-        total += w;
-    }
+            along[axis][static_cast<std::size_t>(c[axis])] += weight;
+        total += weight;
+    });
     if (!(total > 0.0)) return std::nullopt;
-    Sphere sphere;
+    BoundingSphere sphere;
     for (int axis = 0; axis < 3; ++axis)
         sphere.center[axis] = middle(along[axis], total) * cells.size[axis];
     std::vector<std::pair<double, double>> byDistance; // and weight
-    for (int i = 0; i < CELLS * CELLS * CELLS; ++i)
-        if (const double w = cells.weight[static_cast<std::size_t>(i)]; w > 0.0)
-            byDistance.emplace_back(glm::distance(cells.center(i), sphere.center), w);
+    cells.forEach([&](const glm::ivec3& c, double weight) {
+        if (weight > 0.0)
+            byDistance.emplace_back(glm::distance(cells.center(c), sphere.center), weight);
+    });
     std::sort(byDistance.begin(), byDistance.end());
     double sum = 0.0;
     for (const auto& [distance, weight] : byDistance) {

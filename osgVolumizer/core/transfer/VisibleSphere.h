@@ -10,7 +10,7 @@
 namespace osgVolumizer {
 namespace core {
 
-struct Sphere
+struct BoundingSphere
 {
     glm::dvec3 center{0.0};
     double radius = 0.0;
@@ -20,10 +20,9 @@ struct Sphere
 /// samples of noise far off do not count. \param range data values at the ends of the function's
 /// domain \param spacing object units between samples \return in object units from the first
 /// sample, to about a 32nd of the size; nothing where nothing shows.
-OSGVOLUMIZER_CORE_EXPORT std::optional<Sphere> visibleSphere(const VoxelView& voxels,
-                                                             const ValueRange& range,
-                                                             const TransferFunction& function,
-                                                             const glm::dvec3& spacing);
+OSGVOLUMIZER_CORE_EXPORT std::optional<BoundingSphere>
+visibleSphere(const VoxelView& voxels, const ValueRange& range, const TransferFunction& function,
+              const glm::dvec3& spacing);
 
 } // namespace core
 } // namespace osgVolumizer
