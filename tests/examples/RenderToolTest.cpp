@@ -251,6 +251,24 @@ TEST_F(RenderToolGLTest, FramesTheSceneByItself)
     }
 }
 
+// The mirror calls nothing of the library, and its volumes come with the scene file.
+TEST_F(RenderToolGLTest, AProgramWithoutCallsShowsVolumes)
+{
+    const Outcome outcome = runProgram(
+        "osgvolumizermirror", OSGVOLUMIZER_SOURCE_DIR "/data/head.osgt " + file("mirror.png"));
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    const auto image = readFloatPicture(file("mirror.png"));
+    ASSERT_TRUE(image.ok()) << image.status.text;
+    ASSERT_EQ(image->width, 640);
+    ASSERT_EQ(image->height, 480);
+    // The scan, in its table's colours, is all that is bright between the background and the
+    // mirror.
+    std::size_t bright = 0;
+    for (const glm::vec4& pixel : image->pixels)
+        bright += pixel.r > 0.5f;
+    EXPECT_GT(bright, 1000u);
+}
+
 TEST_F(RenderToolGLTest, RefusesInOneSentence)
 {
     const std::string scene = writeSquare(osg::Vec4(1, 1, 1, 1));
