@@ -109,7 +109,7 @@ TEST_F(MovingViews, KeepTheEdgesOfOpaqueGeometry)
     _volume->setNodeMask(~0u);
     ASSERT_TRUE(_volume->setTargetFrameTime(0.05));
     support::SceneRenderer renderer(_scene.root(), options);
-    const FloatImage moved = moving(renderer, 256.0);
+    const FloatImage moved = moving(renderer, 128.0);
     support::savePicture(moved, "moving_opaque");
     support::Mask steel{128, 96, std::vector<unsigned char>(moved.pixels.size(), 0)};
     for (std::size_t i = 0; i < moved.pixels.size(); ++i)
@@ -126,7 +126,7 @@ TEST_F(MovingViews, ErrorsFallWithTheReduction)
     const FloatImage exact = support::renderScene(_scene.root(), options);
     ASSERT_TRUE(_volume->setTargetFrameTime(0.05));
     std::vector<double> errors;
-    for (const double reduction : {8.0, 64.0, 256.0}) {
+    for (const double reduction : {8.0, 64.0, 128.0}) {
         support::SceneRenderer renderer(_scene.root(), options);
         errors.push_back(support::compare(moving(renderer, reduction), exact).rmse);
     }

@@ -6,40 +6,14 @@
 namespace osgVolumizer {
 namespace render {
 
-void FrameTimes::Line::add(double inverse, double seconds)
-{
-    constexpr double FADES = 0.85; // per frame
-    n = FADES * n + 1.0;
-    x = FADES * x + inverse;
-    t = FADES * t + seconds;
-    xx = FADES * xx + inverse * inverse;
-    xt = FADES * xt + inverse * seconds;
-}
-
-double FrameTimes::Line::reductionFor(double target) const
-{
-    constexpr double ALIKE = 0.01; // square of the spread over that of the mean
-    const double spread = n * xx - x * x;
-    if (!(spread > ALIKE * x * x)) return 0.0;
-    const double slope = (n * xt - x * t) / spread; // seconds of all samples
-    if (!(slope > 0.0)) return 1.0;                 // they take no time that could be told
-    const double rest = std::max((t - slope * x) / n, 0.0);
-    return slope / std::max({target - rest, SHARE_OUT_OF_REACH * rest, 1e-9});
-}
-
 void FrameTimes::adapt(View& v, double seconds, double target)
 {
-    v.line.add(1.0 / v.reduction, seconds);
-    double wanted = v.line.reductionFor(target);
-    if (!(wanted > 0.0)) {
-        const double late = seconds / target;
-        // Part of a frame does not depend on samples: less than all of the change at once. On time
-        // it is tried whether there is some left, which a display that waits for its next refresh
-        // does not tell.
-        wanted = v.reduction * (late > 1.0 ? std::pow(late, 0.7) : 0.97 * std::pow(late, 0.3));
-    }
-    const double change = std::clamp(wanted / v.reduction, 1.0 / 1.5, 2.0);
-    v.reduction = std::clamp(v.reduction * change, 1.0, LARGEST);
+    const double late = seconds / target;
+    // Part of a frame does not depend on samples: less than all of the change at once. On time it
+    // is tried whether there is some left, which a display that waits for its next refresh does not
+    // tell.
+    const double change = late > 1.0 ? std::pow(late, 0.7) : 0.97 * std::pow(late, 0.3);
+    v.reduction = std::clamp(v.reduction * std::clamp(change, 1.0 / 1.5, 2.0), 1.0, LARGEST);
 }
 
 double FrameTimes::reduction(std::uint64_t view, unsigned frame, const osg::Matrixd& toClip,

@@ -12,8 +12,9 @@ namespace render {
 
 /// By how much the number of samples is reduced in each view for frames to take a wanted time: more
 /// while the view moves and frames take longer, less while there is time left, not at all once it
-/// rests. How long frames at rest took is where it begins. Where most of a frame has nothing to do
-/// with samples, it is not reduced in vain. Thread safe.
+/// rests. How long frames at rest took is where it begins. Frames that are culled ahead of drawing
+/// tell of reductions some frames late, so no more is made of them than whether they were late.
+/// Thread safe.
 class FrameTimes
 {
 public:
@@ -24,23 +25,13 @@ public:
     double reduction(std::uint64_t view, unsigned frame, const osg::Matrixd& toClip, double now,
                      double target, double fixed = 0.0);
 
-    static constexpr double LARGEST = 256.0;
+    static constexpr double LARGEST = 128.0;
     /// Bound on what frames at rest say of the first one that moves: they may have waited for
     /// something else.
     static constexpr double LARGEST_AT_FIRST = 16.0;
-    /// Where the target is out of reach: seconds that samples may take, over those of all else.
-    static constexpr double SHARE_OUT_OF_REACH = 0.25;
 
 private:
     static constexpr double NEVER = std::numeric_limits<double>::infinity();
-    /// A line through the frames seen last: seconds against 1 / reduction. Sums that fade.
-    struct Line
-    {
-        double n = 0.0, x = 0.0, t = 0.0, xx = 0.0, xt = 0.0;
-        void add(double inverse, double seconds);
-        /// The reduction for a target; 0 where frames have been too much alike to tell.
-        double reductionFor(double target) const;
-    };
     struct View
     {
         unsigned frame = 0;
@@ -49,7 +40,6 @@ private:
         double reduction = 1.0; ///< while moving
         double atRest = NEVER;  ///< seconds of the fastest frame since it moved last
         bool moved = false;     ///< in its last frame
-        Line line;
     };
     static constexpr std::size_t CAPACITY = 16;
 
