@@ -38,12 +38,12 @@ draw() {
     shift 4
     build/bin/osgvolumizerrender "$scene" --size $((2 * width)) $((2 * height)) --period 0.5 \
         --output "$work/$name.exr" "$@"
-    oiiotool "$work/$name.exr" --resize:filter=box "${width}x${height}" -o "$work/$name.exr"
+    oiiotool "$work/$name.exr" --iscolorspace sRGB --resize:filter=box "${width}x${height}" -o "$work/$name.exr"
 }
 
 draw mixed 1600 1000 data/mixed.osgt --background 0.09 0.10 0.14 1 \
     --eye -14 -247 9 --center 2 5 -8 --fovy 27
-oiiotool "$work/mixed.exr" --ch R,G,B -d uint8 -o .pictures/mixed.png
+oiiotool "$work/mixed.exr" --iscolorspace sRGB --ch R,G,B -d uint8 -o .pictures/mixed.png
 
 # Four looks of the same scan, side by side.
 look() {
@@ -59,7 +59,7 @@ look isosurface --ray isosurface --iso 24 --interpolation cubic
 draw maximum 400 420 data/head.tif.volume -O "orientation=PIR ramp=0.32,0.6" --ray maximum \
     --shading off --background 0.09 0.10 0.14 1 --eye 100.4 -127.4 5 --center -41.5 66.65 -74.4 \
     --up -0.16 0.19 0.97 --fovy 25
-oiiotool "$work"/{composited,lit,isosurface,maximum}.exr --mosaic 4x1 --ch R,G,B -d uint8 \
+oiiotool "$work"/{composited,lit,isosurface,maximum}.exr --mosaic 4x1 --iscolorspace sRGB --ch R,G,B -d uint8 \
     -o .pictures/looks.png
 
 cat >"$state" <<END
