@@ -3,7 +3,7 @@
 
 mixed.osgt: the head of head.tif, whose skull was taken off; an implant that takes its place, a
 translucent cap with a titanium rim and screws; a field of brain activity that is painted over the
-brain; a base of glass under the neck. Python 3 and oiiotool (of OpenImageIO).
+brain; a plate of glass under the neck. Python 3 and oiiotool (of OpenImageIO).
 
     python3 data/makescenes.py
 
@@ -291,14 +291,17 @@ def head(w):
     appearance(w, "head", "head.tif", (128, 128, 84), "head.lut", shading=True)
 
 
-def framed(w, name, radius, center, children):
-    """A group whose bound is this sphere, for viewers to frame, whatever there is beyond it."""
-    w.object("osg::LOD", name)
+def framed(w, radius, center, children):
+    """A group whose bound is this sphere, for viewers to frame, whatever there is beyond it. Its children
+    lie in a group of their own: OSG's Optimizer forgets the ranges of children that it merges."""
+    w.object("osg::LOD", "framed")
     w.line("CullingActive FALSE")
+    w.open("Children 1")
+    w.object("osg::Group", "things")
     w.open(f"Children {children}")
-    return lambda: (w.close(), w.line("CenterMode USER_DEFINED_CENTER"),
-                    w.line(f"UserCenter {numbers(center)} {radius:g}"), w.open(f"RangeList {children}"),
-                    [w.line("0 1e+30") for _ in range(children)], w.close(2))
+    return lambda: (w.close(3), w.line("CenterMode USER_DEFINED_CENTER"),
+                    w.line(f"UserCenter {numbers(center)} {radius:g}"), w.open("RangeList 1"),
+                    w.line("0 1e+30"), w.close(2))
 
 
 def transform(w, name, rows):
@@ -310,7 +313,7 @@ def head_scene():
     w = Writer()
     end_view = transform(w, "view", VIEW)
     w.open("Children 1")
-    end_frame = framed(w, "framed", 60, (0.0, 3.0, -10.0), 1)
+    end_frame = framed(w, 60, (0.0, 3.0, -10.0), 1)
     end_upright = transform(w, "upright", UPRIGHT)
     w.open("Children 1")
     head(w)
@@ -328,7 +331,7 @@ def mixed_scene():
     rim = frame[3]
     end_view = transform(w, "view", VIEW)
     w.open("Children 1")
-    end_frame = framed(w, "framed", 62, (0.0, 5.0, -7.0), 5)
+    end_frame = framed(w, 62, (0.0, 5.0, -7.0), 6)
     end_upright = transform(w, "upright", UPRIGHT)
     w.open("Children 2")
     head(w)
@@ -349,8 +352,10 @@ def mixed_scene():
         screws.append(revolved([(0.0, 2.0), (1.8, 1.7), (2.1, 0.4), (1.2, 0.2), (1.2, -5.0), (0.0, -6.5)],
                                point, normal, segments=14))
     mesh(w, "screws", *joined(screws), (0.85, 0.72, 0.45), 1.0, 0.8, 70)
-    mesh(w, "base", *revolved([(0.0, 3.0), (40.0, 3.0), (43.0, 0.0), (43.0, -3.0), (40.0, -5.0), (0.0, -5.0)],
-                              (0.0, 12.0, -52.0), (0.0, 0.0, 1.0)), (0.55, 0.9, 0.8), 0.35, 0.8, 80)
+    place, upwards = (0.0, 12.0, -51.0), (0.0, 0.0, 1.0)
+    mesh(w, "base", *revolved([(0.0, 0.0), (43.0, 0.0)], place, upwards), (0.55, 0.9, 0.8), 0.45, 0.8, 80)
+    mesh(w, "base ring", *revolved([(42.6, 0.9), (44.4, 0.9), (45.0, 0.3), (45.0, -1.2), (42.6, -1.2), (42.6, 0.9)],
+                                   place, upwards), (0.72, 0.74, 0.78), 1.0, 0.7, 60)
     end_frame()
     w.close()
     end_view()

@@ -167,13 +167,12 @@ void addRow(std::string& text, const std::string& option, const std::string& hel
     std::istringstream words(help);
     std::string word;
     while (words >> word) {
-        if (line.size() + word.size() > WIDTH) {
+        if (line.size() + word.size() >= WIDTH) {
             text += line + "\n";
-            line.assign(COLUMN, ' ');
+            line.assign(COLUMN - 1, ' ');
         }
-        line += word + " ";
+        line += (line.back() == ' ' && line.size() == COLUMN ? "" : " ") + word;
     }
-    line.pop_back();
     text += line + "\n";
 }
 
@@ -205,7 +204,8 @@ What every volume of the scene gets instead of what it has:
 )";
     for (const osgVolumizer::AppearanceProperty& property : osgVolumizer::appearanceProperties())
         addRow(text, std::string("--") + property.option,
-               std::string(property.help) + ": " + osgVolumizer::appearanceValueText(property));
+               std::string(property.help) + " (" + osgVolumizer::appearanceValueText(property) +
+                   ")");
     text += "\nIn the -O of a .volume (the above too, as name=value):\n";
     for (const osgVolumizer::VolumeOption& option : osgVolumizer::volumeOptions())
         if (!osgVolumizer::findAppearanceOption(option.name))
