@@ -32,20 +32,6 @@ std::string inFolderOf(const std::string& path, const std::string& name)
     return (fs::absolute(path).parent_path() / fs::path(name).filename()).string();
 }
 
-// Whether a DICOM file lies beside others.
-bool hasOtherSlices(const std::string& path)
-{
-    namespace fs = std::filesystem;
-    if (!io::isDicomFile(path)) return false;
-    std::error_code error;
-    for (fs::directory_iterator i(fs::absolute(path).parent_path(), error), end; !error && i != end;
-         i.increment(error))
-        if (i->path().filename() != fs::path(path).filename() &&
-            io::isDicomFile(i->path().string()))
-            return true;
-    return false;
-}
-
 Result<io::Source> readFiles(const Result<std::vector<std::string>>& paths,
                              const Progress& progress)
 {
@@ -66,9 +52,9 @@ Result<io::Source> readSource(std::string name, const osgDB::Options* options,
         if (std::filesystem::is_directory(path, unknown))
             return readFiles(io::listFolder(path), progress);
         Result<io::Source> source = io::readImage(path, progress);
-        if (source.ok() && (*source)->describe().size.z == 1 && hasOtherSlices(path))
-            OSG_NOTICE << "osgVolumizer: " << path << " is one slice; the name of its folder opens "
-                       << "all that lie there" << std::endl;
+        if (source.ok() && io::isSliceOfSeries(path))
+            OSG_NOTICE << "osgVolumizer: " << path << " is one slice of a series; the name of its "
+                       << "folder opens all that lie there" << std::endl;
         return source;
     }
     if (io::looksRaw(name)) {

@@ -119,7 +119,8 @@ std::vector<double> numbersOf(const std::string& text)
 
 // The elements that matter, by group and number.
 constexpr std::uint32_t TRANSFER_SYNTAX = 0x00020010u, SLICE_THICKNESS = 0x00180050u;
-constexpr std::uint32_t SPACING_BETWEEN_SLICES = 0x00180088u, INSTANCE_NUMBER = 0x00200013u;
+constexpr std::uint32_t SPACING_BETWEEN_SLICES = 0x00180088u, SERIES = 0x0020000eu;
+constexpr std::uint32_t INSTANCE_NUMBER = 0x00200013u;
 constexpr std::uint32_t IMAGE_POSITION = 0x00200032u, IMAGE_ORIENTATION = 0x00200037u;
 constexpr std::uint32_t SAMPLES_PER_PIXEL = 0x00280002u, NUMBER_OF_FRAMES = 0x00280008u;
 constexpr std::uint32_t ROWS = 0x00280010u, COLUMNS = 0x00280011u, PIXEL_SPACING = 0x00280030u;
@@ -134,7 +135,7 @@ public:
     static bool wants(std::uint32_t tag)
     {
         return tag == TRANSFER_SYNTAX || tag == SLICE_THICKNESS || tag == SPACING_BETWEEN_SLICES ||
-               (tag >= INSTANCE_NUMBER && tag <= IMAGE_ORIENTATION) ||
+               tag == SERIES || (tag >= INSTANCE_NUMBER && tag <= IMAGE_ORIENTATION) ||
                (tag >= SAMPLES_PER_PIXEL && tag <= RESCALE_SLOPE);
     }
     std::string& operator[](std::uint32_t tag) { return _values[tag]; }
@@ -236,6 +237,7 @@ Result<DicomHeader> interpret(const Values& values, const std::string& name)
         std::fabs(values.decimal(SPACING_BETWEEN_SLICES, values.decimal(SLICE_THICKNESS, 0.0)));
     h.position = positionOf(values);
     h.axes = axesOf(values);
+    h.series = values.text(SERIES);
     const double instance = values.decimal(INSTANCE_NUMBER, NAN);
     if (std::fabs(instance) < 1e15) h.instance = static_cast<std::int64_t>(instance);
     if (Status status = check(h, values.number(SAMPLES_PER_PIXEL, 1), name); !status.ok())

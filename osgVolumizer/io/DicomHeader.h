@@ -36,6 +36,7 @@ struct DicomHeader
     /// unsaid.
     glm::dmat3 axes{1.0};
     std::optional<std::int64_t> instance;
+    std::string series; ///< the identifier of the scan that it is part of; empty where unsaid
 
     std::int64_t pixelBytes() const
     {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 namespace osgVolumizer {
@@ -142,6 +143,27 @@ bool isDicomFile(const std::string& path)
     if (!core::requireRegularFile(path).ok()) return false;
     std::ifstream stream(path, std::ios::binary);
     return stream && isDicom(stream);
+}
+
+bool isSliceOfSeries(const std::string& path)
+{
+    namespace fs = std::filesystem;
+    const auto headerOf = [](const std::string& file) -> Result<DicomHeader> {
+        if (!isDicomFile(file)) return Status(ErrorCode::NOT_SUPPORTED, file + " is no DICOM file");
+        std::ifstream stream(file, std::ios::binary);
+        return readDicomHeader(stream, file);
+    };
+    const Result<DicomHeader> own = headerOf(path);
+    if (!own.ok() || own->size.z != 1) return false;
+    const fs::path whole = fs::absolute(path);
+    std::error_code failed;
+    for (fs::directory_iterator i(whole.parent_path(), failed), end; !failed && i != end;
+         i.increment(failed)) {
+        if (i->path().filename() == whole.filename()) continue;
+        const Result<DicomHeader> other = headerOf(i->path().string());
+        if (other.ok() && other->series == own->series && other->size == own->size) return true;
+    }
+    return false;
 }
 
 Result<Source> readDicom(const std::vector<std::string>& paths, const Progress& progress)

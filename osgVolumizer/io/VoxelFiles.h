@@ -28,6 +28,8 @@ Result<Source> readStack(const std::vector<std::string>& paths, const Progress& 
 
 /// True where a file starts as DICOM does.
 bool isDicomFile(const std::string& path);
+/// True where a file is one DICOM slice, and another of its series lies in its folder.
+bool isSliceOfSeries(const std::string& path);
 /// One DICOM file with any number of frames, or one per slice, sorted along the patient (or by
 /// instance number). Data values with slope and intercept (HU for a CT), in the narrowest type that
 /// holds them; spacing in mm. NOT_SUPPORTED for what io/DicomHeader.h leaves out.

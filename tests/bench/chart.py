@@ -143,9 +143,12 @@ class Panel:
                     yield value
 
 
+def escaped(words):
+    return words.replace("&", "&amp;").replace("<", "&lt;")
+
+
 def text(x, y, words, anchor="middle", extra=""):
-    words = words.replace("&", "&amp;").replace("<", "&lt;")
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" {extra}>{words}</text>'
+    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" {extra}>{escaped(words)}</text>'
 
 
 def marker(shape, x, y, color):
@@ -185,7 +188,7 @@ def draw_axes(panel):
         if panel.y[0] <= math.log10(value) <= panel.y[1]:
             _, y = panel.at(10.0 ** panel.x[0], value)
             out.append(f'<path d="M{panel.left} {y:.1f}H{right}" stroke="#c4001d" stroke-dasharray="2 3"/>')
-            out.append(text(right - 3, y - 3, f"{value:.0e}".replace("e-0", "e-"), "end",
+            out.append(text(right + 3, y + 3, f"{value:.0e}".replace("e-0", "e-"), "start",
                             'font-size="9" fill="#c4001d"'))
     return out
 
@@ -235,7 +238,7 @@ def svg(scenes, clock, run):
              f"Times: {clock}, medians over rounds."] + run
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
            f'viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="11">',
-           f"<desc>{'; '.join(run)}</desc>", '<rect width="100%" height="100%" fill="#fff"/>',
+           f"<desc>{escaped('; '.join(run))}</desc>", '<rect width="100%" height="100%" fill="#fff"/>',
            text(width / 2, 20, "Time against error of volume renderers in OpenSceneGraph and VTK, scene by scene",
                 extra='font-size="16"')]
     for i, (scene, (description, curves)) in enumerate(scenes.items()):

@@ -1,5 +1,7 @@
-// Any text as a .lut or .tf: either refused with a reason, or points that a table takes.
+// Any text as a .lut or .tf: either refused with a reason, or points that a table takes; and as a
+// table of other programs.
 #include <osgVolumizer/LookupTable.h>
+#include <osgVolumizer/io/ForeignTable.h>
 
 #include <cstdlib>
 #include <string>
@@ -25,5 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
     const std::string text(reinterpret_cast<const char*>(data), size);
     check(parseLookupTable(text, "fuzz.lut"));
     check(parseTransferFunctionFile(text, "fuzz.tf"));
+    for (const char* name : {"fuzz.lut", "fuzz.vp"})
+        if (io::foreignTableFormat(text, name).size() > 60) std::abort();
     return 0;
 }

@@ -239,7 +239,19 @@ TEST(LookupTableFile, TablesOfOthersAreCalledByTheirName)
          "ITK-SNAP"},
         {"a.am", "# AmiraMesh BINARY-LITTLE-ENDIAN 2.1\ndefine Lattice 256\n", "Amira"},
         {"i.lut", imageJ, "ImageJ"},
-        {"b.lut", std::string("\x89PNG\0\0\0\0", 8), "no text"},
+        {"s.lut",
+         "1\n1\n0.1\n0.9\n0.2\n10\n12 -3024 0 143.556 0 166.222 0.686275 214.389 0.696078 "
+         "419.736 0.833333 3071 0.803922\n4 0 1 255 1\n",
+         "volume property of 3D Slicer"},
+        {"f.txt", "#No. Label Name:   R   G   B   A\n\n0   Unknown   0   0   0   0\n",
+         "FreeSurfer"},
+        {"h.lut", "Index\tRed\tGreen\tBlue\n0\t0\t0\t0\n1\t1\t1\t1\n", "ImageJ (text)"},
+        {"n.lut", "ICOL" + std::string(796, '\1'), "ImageJ"},
+        {"a.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR", 16), "image (PNG)"},
+        {"a.jpg", std::string("\xff\xd8\xff\xe0\0\x10JFIF", 10), "image (JPEG)"},
+        {"a.tif", std::string("II*\0\x08\0\0\0", 8), "image (TIFF)"},
+        {"a.lut.gz", std::string("\x1f\x8b\x08\0\0\0\0\0", 8), "gzip"},
+        {"b.lut", std::string("0 1\0 2\n", 7), "no text"},
         {"j.lut", "{}", "JSON"},
         {"x.lut", "\xEF\xBB\xBF<a/>", "XML"},
     };
@@ -252,7 +264,11 @@ TEST(LookupTableFile, TablesOfOthersAreCalledByTheirName)
         EXPECT_NE(std::string::npos, table.status.text.find(".lut")) << table.status.text;
     }
     // What is nobody's keeps the message of what is wrong in it.
-    const auto bad = readLookupTable(write("bad.lut", "0 1 2\n"));
-    EXPECT_EQ(ErrorCode::VALUE_INVALID, bad.status.code);
-    EXPECT_NE(std::string::npos, bad.status.text.find("line 1"));
+    for (const char* text : {"0 1 2\n", "1\n1\n0.1\n0.9\n0.2\n", "Index\n0 1 2\n", "BM\n"}) {
+        const auto bad = readLookupTable(write("bad.lut", text));
+        EXPECT_EQ(ErrorCode::VALUE_INVALID, bad.status.code) << text;
+        EXPECT_NE(std::string::npos, bad.status.text.find("line 1")) << bad.status.text;
+    }
+    // Nor is a table that can be read refused for what its comments say.
+    EXPECT_TRUE(readLookupTable(write("own.lut", "# Color table file\n0 1 1 1 0\n")).ok());
 }

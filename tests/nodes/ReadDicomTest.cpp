@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <osg/Notify>
 
 #include <cmath>
 #include <filesystem>
@@ -42,7 +43,7 @@ struct Dicom
 {
     int columns = 4, rows = 3, frames = 1;
     int allocated = 16, stored = 16, highBit = 15, representation = 0;
-    std::string slope, intercept, spacing, thickness, position, instance;
+    std::string slope, intercept, spacing, thickness, position, instance, series;
     std::string orientation = "1\\0\\0\\0\\1\\0";
     std::string syntax = "1.2.840.10008.1.2.1";
     std::string pixels;
@@ -66,7 +67,8 @@ struct Dicom
                            element(2, 0x10, "UI", syntax, false);
         meta = element(2, 0, "UL", number32(static_cast<std::uint32_t>(meta.size())), false) + meta;
         std::string body = before + add(0x18, 0x50, "DS", thickness) +
-                           add(0x20, 0x13, "IS", instance) + add(0x20, 0x32, "DS", position);
+                           add(0x20, 0xe, "UI", series) + add(0x20, 0x13, "IS", instance) +
+                           add(0x20, 0x32, "DS", position);
         if (!position.empty()) body += add(0x20, 0x37, "DS", orientation);
         body += add(0x28, 2, "US", number16(1));
         if (frames != 1) body += add(0x28, 8, "IS", std::to_string(frames));
@@ -263,6 +265,38 @@ TEST_F(ReadDicom, ASliceIsAsThickAsItsHeaderSays)
     const osg::BoundingBox box = VolumeGeometry::createBox(**one)->getBoundingBox();
     EXPECT_EQ(box.zMin(), -1.5f);
     EXPECT_EQ(box.zMax(), 1.5f);
+}
+
+TEST_F(ReadDicom, ASliceOfASeriesIsToldToBeOne)
+{
+    struct Heard : osg::NotifyHandler
+    {
+        void notify(osg::NotifySeverity, const char* text) override { all += text; }
+        std::string all;
+    };
+    const osg::ref_ptr<osg::NotifyHandler> before = osg::getNotifyHandler();
+    const auto heard = [&](const std::string& name) {
+        const osg::ref_ptr<Heard> handler = new Heard;
+        osg::setNotifyHandler(handler);
+        EXPECT_TRUE(readVoxels(name).ok());
+        osg::setNotifyHandler(before);
+        return handler->all;
+    };
+    file.series = "1.2.3";
+    const std::string first = write("a.dcm", file.bytes());
+    EXPECT_EQ(heard(first), "");
+    file.series = "1.2.4";
+    write("b.dcm", file.bytes());
+    write("c.txt", "no slice");
+    EXPECT_EQ(heard(first), ""); // of another series
+    file.series = "1.2.3";
+    write("d.dcm", file.bytes());
+    const std::string text = heard(first);
+    EXPECT_NE(text.find(first), std::string::npos) << text;
+    EXPECT_NE(text.find("folder"), std::string::npos) << text;
+    fs::remove(path("b.dcm"));
+    fs::remove(path("c.txt"));
+    EXPECT_EQ(heard(path("")), "");
 }
 
 TEST_F(ReadDicom, SequencesAreSkippedWhateverTheirForm)
