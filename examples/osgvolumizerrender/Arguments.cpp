@@ -194,7 +194,7 @@ Renders a scene without a window and writes the picture, the statistics, or both
   --eye X Y Z           where the viewer is; without it, the whole scene is shown
   --center X Y Z        what is looked at (the scene's centre)
   --up X Y Z            what is upwards (0 0 1)
-  --fovy DEGREES        vertical field of view (30)
+  --fovy DEGREES        vertical field of view (osgviewer's, 29.1)
   --ortho HALF_HEIGHT   parallel projection, half the picture's height in world units
   --background R G B A  premultiplied (0 0 0 0)
   -O STRING             options for the reader of SCENE, e.g. "spacing=1,1,1.5 table=bone.lut"
