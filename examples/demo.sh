@@ -53,14 +53,18 @@ osgviewer --samples 4 --window 0 0 1024 768 "$scene" >"$work/osgviewer.log" 2>&1
 viewer=$!
 
 # The picture is there when the screen is no longer of one colour and has stopped changing.
+# A frame may take longer than a second, and the first ones may have fewer samples, as of a view that
+# moves.
 last=
+same=0
 for _ in $(seq 120); do
     sleep 1
     kill -0 $viewer 2>/dev/null || break
     import -silent -window root "$work/screen.png"
     colours=$(identify -format '%k' "$work/screen.png")
     now=$(identify -format '%#' "$work/screen.png")
-    if [ "$colours" -gt 16 ] && [ "$now" = "$last" ]; then
+    if [ "$now" = "$last" ]; then same=$((same + 1)); else same=0; fi
+    if [ "$colours" -gt 16 ] && [ $same -ge 4 ]; then
         mv "$work/screen.png" "$picture"
         echo "No display: the picture is in $picture"
         # The drivers' own messages are none of the scene's.

@@ -6,6 +6,21 @@
 namespace osgVolumizer {
 namespace render {
 
+namespace {
+
+// Manipulators compute the same view anew in every frame, and round it differently.
+bool differs(const osg::Matrixd& a, const osg::Matrixd& b)
+{
+    double largest = 0.0, difference = 0.0;
+    for (int i = 0; i < 16; ++i) {
+        largest = std::max(largest, std::abs(a.ptr()[i]));
+        difference = std::max(difference, std::abs(a.ptr()[i] - b.ptr()[i]));
+    }
+    return !(difference <= 1e-12 * largest);
+}
+
+} // namespace
+
 void FrameTimes::adapt(View& v, double seconds, double target)
 {
     const double late = seconds / target;
@@ -35,7 +50,7 @@ double FrameTimes::reduction(std::uint64_t view, unsigned frame, const osg::Matr
         else
             v.atRest = std::min(v.atRest, seconds);
     }
-    const bool moves = consecutive && v.toClip != toClip;
+    const bool moves = consecutive && differs(v.toClip, toClip);
     if (moves && !v.moved && target > 0.0 && v.atRest < NEVER)
         v.reduction = std::max(v.reduction, std::clamp(v.atRest / target, 1.0, LARGEST_AT_FIRST));
     if (v.moved || !consecutive) v.atRest = NEVER;

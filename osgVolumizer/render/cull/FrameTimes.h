@@ -20,8 +20,9 @@ class FrameTimes
 public:
     /// Once a frame. \param view whichever identifies it \param frame number of the frame, which
     /// tells whether the last one was seen \param toClip where the volume is in it: moving is when
-    /// this changes \param now, target seconds \param fixed what to return for views that move,
-    /// whatever time they take; 0: by time \return samples wanted over samples to be taken, >= 1
+    /// this changes by more than rounding \param now, target seconds \param fixed what to return
+    /// for views that move, whatever time they take; 0: by time \return samples wanted over samples
+    /// to be taken, >= 1
     double reduction(std::uint64_t view, unsigned frame, const osg::Matrixd& toClip, double now,
                      double target, double fixed = 0.0);
 
@@ -34,7 +35,7 @@ private:
     static constexpr double NEVER = std::numeric_limits<double>::infinity();
     struct View
     {
-        unsigned frame = 0;
+        unsigned frame = ~0u - 1; ///< none yet, and none that another one follows
         osg::Matrixd toClip;
         double time = 0.0;
         double reduction = 1.0; ///< while moving

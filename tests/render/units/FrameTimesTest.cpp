@@ -89,6 +89,15 @@ TEST(FrameTimes, AFrameThatWaitedForSomethingElseIsForgotten)
     EXPECT_GT(seconds, 0.03);
 }
 
+TEST(FrameTimes, ViewsThatAreRoundedAnewAreAtRest)
+{
+    FrameTimes times;
+    for (unsigned frame = 1; frame < 20; ++frame)
+        EXPECT_EQ(times.reduction(1, frame, at(122.0 + (frame % 2) * 6e-14), 0.1 * frame, 0.01),
+                  1.0);
+    EXPECT_GT(times.reduction(1, 20, at(122.0 + 1e-6), 2.0, 0.01), 1.0);
+}
+
 TEST(FrameTimes, MayBeFixedForMovingViews)
 {
     FrameTimes times;
