@@ -3,8 +3,8 @@
 #include "core/NumberRule.h"
 #include "core/Text.h"
 
-#include <algorithm>
-#include <cctype>
+#include <osgDB/FileNameUtils>
+
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -189,14 +189,6 @@ std::vector<Property> makeProperties()
     };
 }
 
-std::string lowerCase(std::string_view text)
-{
-    std::string result(text);
-    for (char& c : result)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return result;
-}
-
 Status unexpected(const Property& p, std::string_view text, const std::string& expected)
 {
     return {ErrorCode::VALUE_INVALID,
@@ -207,7 +199,7 @@ Status unexpected(const Property& p, std::string_view text, const std::string& e
 int choiceOf(const Property& p, const std::string& text)
 {
     for (std::size_t i = 0; i < p.choices.size(); ++i) {
-        const std::string name = lowerCase(p.choices[i]);
+        const std::string name = osgDB::convertToLowerCase(p.choices[i]);
         const bool automatic = name.compare(0, 9, "automatic") == 0;
         if (text == name || (automatic && (text == "auto" || text == "automatic")))
             return static_cast<int>(i);
@@ -242,7 +234,7 @@ const AppearanceProperty* findAppearanceOption(std::string_view option)
 Result<Values> parseAppearanceValues(const AppearanceProperty& p, std::string_view text)
 {
     if (p.kind == Property::CHOICE || p.kind == Property::FLAG) {
-        const std::string word = lowerCase(text);
+        const std::string word = osgDB::convertToLowerCase(std::string(text));
         const int value = p.kind == Property::FLAG ? flagOf(word) : choiceOf(p, word);
         if (value < 0) return unexpected(p, text, "one of " + appearanceValueText(p));
         return Values{double(value)};
@@ -268,7 +260,7 @@ std::string appearanceValueText(const AppearanceProperty& p)
         return p.count == 1 ? "a number" : p.count == 3 ? "x or x,y,z" : "four numbers a,b,c,d";
     std::string text;
     for (const char* name : p.choices)
-        text += (text.empty() ? "" : ", ") + lowerCase(name);
+        text += (text.empty() ? "" : ", ") + osgDB::convertToLowerCase(name);
     return text;
 }
 

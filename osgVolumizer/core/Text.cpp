@@ -8,6 +8,8 @@ namespace core {
 
 namespace {
 
+constexpr std::string_view BLANKS = " \t\r\n\v\f";
+
 template <class T>
 bool parseWhole(std::string_view text, T& value)
 {
@@ -53,13 +55,12 @@ std::vector<std::string_view> splitText(std::string_view text, char separator)
 
 std::vector<std::string_view> splitBlanks(std::string_view text)
 {
-    static constexpr std::string_view blanks = " \t\r\n\v\f";
     std::vector<std::string_view> pieces;
     for (;;) {
-        const std::size_t start = text.find_first_not_of(blanks);
+        const std::size_t start = text.find_first_not_of(BLANKS);
         if (start == std::string_view::npos) return pieces;
         text.remove_prefix(start);
-        const std::size_t end = text.find_first_of(blanks);
+        const std::size_t end = text.find_first_of(BLANKS);
         pieces.push_back(text.substr(0, end));
         if (end == std::string_view::npos) return pieces;
         text.remove_prefix(end);
@@ -67,8 +68,6 @@ std::vector<std::string_view> splitBlanks(std::string_view text)
 }
 
 namespace {
-
-constexpr std::string_view BLANKS = " \t\r\n\f\v";
 
 // Takes what is quoted, or all up to one of `ends`, off the front of a text.
 std::string takeWord(std::string_view& text, const std::string& ends, bool& closed)

@@ -2,7 +2,8 @@
 
 #include "../core/Text.h"
 
-#include <cctype>
+#include <osgDB/FileNameUtils>
+
 #include <string_view>
 #include <vector>
 
@@ -14,14 +15,6 @@ namespace {
 bool holds(const std::string& text, const char* part)
 {
     return text.find(part) != std::string::npos;
-}
-
-bool endsWith(std::string name, const std::string& ending)
-{
-    for (char& c : name)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return name.size() > ending.size() &&
-           name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
 }
 
 struct Signature
@@ -128,8 +121,9 @@ std::string foreignTableFormat(const std::string& text, const std::string& name)
     if (binary) return "no text";
     if (text[first] == '{' || text[first] == '[') return jsonFormat(text);
     if (text[first] == '<') return xmlFormat(text);
-    if (endsWith(name, ".vp")) return "a volume property of 3D Slicer";
-    if (endsWith(name, ".ctbl")) return "a colour table of 3D Slicer";
+    const std::string extension = osgDB::getLowerCaseFileExtension(name);
+    if (extension == "vp") return "a volume property of 3D Slicer";
+    if (extension == "ctbl") return "a colour table of 3D Slicer";
     return arrangedFormat(text);
 }
 

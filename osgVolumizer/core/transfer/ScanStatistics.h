@@ -44,11 +44,11 @@ OSGVOLUMIZER_CORE_EXPORT int otsuThreshold(const std::vector<std::uint64_t>& his
 /// A look that shows something sensible of any scan, over the fraction [0, 1] of the statistics'
 /// range. Otsu's threshold parts the values into two classes; the one that prevails on the outside
 /// of the volume is background and transparent. From the threshold to the value that all but 0.1 %
-/// of the foreground lies within, opacity rises, fast at first, and so does brightness, from skin
-/// to ivory. The highest opacity is such that a ray through the inner half of the volume, seen
-/// along an axis, has an optical depth of 12 over the whole volume's width: solid, with what is
-/// just below its surface still showing. The opacity unit is taken to be the voxels' mean spacing.
-/// \param voxelsPerSample distance between samples, in voxels
+/// of the foreground lies within, opacity rises, fast at first, and so does brightness, from dark
+/// red over skin to ivory. The highest opacity is such that a ray through the inner half of the
+/// volume, seen along an axis, has an optical depth of 12 over the whole volume's width: solid,
+/// with what is just below its surface still showing. The opacity unit is taken to be the voxels'
+/// mean spacing. \param voxelsPerSample distance between samples, in voxels
 OSGVOLUMIZER_CORE_EXPORT TransferFunction suggestTransferFunction(const ScanStatistics& statistics,
                                                                   int voxelsPerSample = 1);
 

@@ -1,5 +1,7 @@
 #include "TargetBuffers.h"
 
+#include <algorithm>
+
 #include "Allocation.h"
 #include "Framebuffer.h"
 
@@ -105,6 +107,22 @@ void deleteFramebuffers(osg::GLExtensions& gl, std::initializer_list<GLuint*> na
         if (*name) gl.glDeleteFramebuffers(1, name);
         *name = 0;
     }
+}
+
+bool FloatTarget::ensure(osg::State& state, int minimumWidth, int minimumHeight)
+{
+    if (color && width >= minimumWidth && height >= minimumHeight) return true;
+    width = std::max(minimumWidth, width);
+    height = std::max(minimumHeight, height);
+    color = makeTarget(state, width, height, GL_RGBA32F_ARB);
+    if (!color) {
+        width = height = 0;
+        return false;
+    }
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    bindOwn(gl, framebuffer);
+    attach(gl, GL_COLOR_ATTACHMENT0_EXT, textureName(state, *color));
+    return true;
 }
 
 } // namespace render

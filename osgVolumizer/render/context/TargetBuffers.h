@@ -21,6 +21,17 @@ osg::ref_ptr<osg::Texture2D> makeTarget(osg::State& state, int width, int height
 osg::ref_ptr<osg::Texture2DArray> makeTargetArray(osg::State& state, const glm::ivec3& size,
                                                   GLenum internalFormat);
 
+/// A 32-bit float target of colour, grown to the largest size that was asked for.
+struct FloatTarget
+{
+    int width = 0, height = 0;
+    GLuint framebuffer = 0;
+    osg::ref_ptr<osg::Texture2D> color;
+
+    /// Makes it, or makes it anew where it is too small; false where the card has no memory for it.
+    bool ensure(osg::State& state, int minimumWidth, int minimumHeight);
+};
+
 /// The name of a texture that was made.
 GLuint textureName(const osg::State& state, const osg::Texture& texture);
 

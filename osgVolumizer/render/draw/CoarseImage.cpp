@@ -3,7 +3,6 @@
 #include "../context/ProgramInterface.h"
 #include "../context/ReportOnce.h"
 #include "../context/ScreenPass.h"
-#include "../context/TargetBuffers.h"
 #include "../context/Uniforms.h"
 #include "AccumulationBuffers.h"
 #include "VolumeProgram.h"
@@ -19,22 +18,6 @@ namespace render {
 namespace {
 
 constexpr unsigned UNIT_COARSE = UNIT_SPLIT_DEPTH; // of programs that are never coarse
-
-bool ensureCoarse(osg::State& state, CoarseBuffers& buffers, const glm::ivec2& size)
-{
-    if (buffers.color && buffers.width >= size.x && buffers.height >= size.y) return true;
-    buffers.width = std::max(size.x, buffers.width);
-    buffers.height = std::max(size.y, buffers.height);
-    buffers.color = makeTarget(state, buffers.width, buffers.height, GL_RGBA32F_ARB);
-    if (!buffers.color) {
-        buffers.width = buffers.height = 0;
-        return false;
-    }
-    bindOwn(*state.get<osg::GLExtensions>(), buffers.framebuffer);
-    attach(*state.get<osg::GLExtensions>(), GL_COLOR_ATTACHMENT0_EXT,
-           textureName(state, *buffers.color));
-    return true;
-}
 
 glm::ivec4 intersection(const glm::ivec4& a, const glm::ivec4& b)
 {
@@ -61,7 +44,7 @@ glm::vec4 ends(const glm::ivec4& r)
 
 void CoarseBuffers::release(osg::GLExtensions& gl)
 {
-    deleteFramebuffers(gl, {&framebuffer});
+    deleteFramebuffers(gl, {&target.framebuffer});
 }
 
 CoarseImage::CoarseImage(osg::State& state, ContextResources& resources, const glm::dvec4& viewport,
@@ -74,7 +57,7 @@ CoarseImage::CoarseImage(osg::State& state, ContextResources& resources, const g
 {
     glGetIntegerv(GL_VIEWPORT, _viewport);
     glGetIntegerv(GL_SCISSOR_BOX, _scissor);
-    _made = ensureCoarse(state, resources.part<CoarseBuffers>(), _size);
+    _made = resources.part<CoarseBuffers>().target.ensure(state, _size.x, _size.y);
     if (!_made)
         reportOnce({ErrorCode::NOT_SUPPORTED, "the card has no memory for coarse images; volumes "
                                               "have a ray for each pixel while the view moves"});
@@ -105,7 +88,7 @@ bool CoarseImage::begin(const Uniforms& uniforms, const glm::ivec4& rectangle)
         glm::ivec2(glm::floor((glm::vec2(pixels.z, pixels.w) + 1.0f - offset) / scale)) + 1;
     _texels = glm::ivec4(glm::max(first, glm::ivec2(0)), glm::min(last, _size - 1));
 
-    _scope.redirect(_resources.part<CoarseBuffers>().framebuffer);
+    _scope.redirect(_resources.part<CoarseBuffers>().target.framebuffer);
     glViewport(0, 0, _size.x, _size.y);
     glEnable(GL_SCISSOR_TEST);
     glScissor(_texels.x, _texels.y, _texels.z - _texels.x + 1, _texels.w - _texels.y + 1);
@@ -132,7 +115,7 @@ void CoarseImage::end()
         uniforms.set("imageToWindow", _toWindow);
         uniforms.set("windowEnds", ends(_rectangle));
         uniforms.set("imageEnds", glm::vec4(_texels));
-        _state.applyTextureAttribute(UNIT_COARSE, coarse.color.get());
+        _state.applyTextureAttribute(UNIT_COARSE, coarse.target.color.get());
         drawScreen(_state, _resources, _rectangle);
     }
     _scope.applyProgram();

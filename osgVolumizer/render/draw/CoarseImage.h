@@ -1,10 +1,10 @@
 #pragma once
 
 #include "../context/ContextResources.h"
+#include "../context/TargetBuffers.h"
 #include "TargetScope.h"
 
 #include <osg/Program>
-#include <osg/Texture2D>
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
@@ -14,12 +14,10 @@ namespace render {
 
 class Uniforms;
 
-/// What coarse images are drawn into. One a context, grown to the largest seen.
+/// What coarse images are drawn into. One a context.
 struct CoarseBuffers : ContextPart
 {
-    int width = 0, height = 0;
-    GLuint framebuffer = 0;
-    osg::ref_ptr<osg::Texture2D> color;
+    FloatTarget target;
     osg::ref_ptr<osg::Program> program; ///< fills pixels
 
     void release(osg::GLExtensions& gl) override;

@@ -28,15 +28,14 @@ RayTarget::RayTarget(osg::State& state, ContextResources& resources,
     : _state(state), _gl(*state.get<osg::GLExtensions>()), _resources(resources),
       _features(features), _viewport(viewport), _scope(state)
 {
-    _made =
-        ensureRays(_state, _resources.part<RayBuffers>(), std::max(_viewport.x + _viewport.z, 1),
-                   std::max(_viewport.y + _viewport.w, 1));
+    _made = _resources.part<RayBuffers>().target.ensure(
+        _state, std::max(_viewport.x + _viewport.z, 1), std::max(_viewport.y + _viewport.w, 1));
     if (!_made) {
         reportOnce({ErrorCode::NOT_SUPPORTED, "the card has no memory for gathered values; volumes "
                                               "with such ray functions are not drawn"});
         return;
     }
-    _scope.redirect(_resources.part<RayBuffers>().framebuffer);
+    _scope.redirect(_resources.part<RayBuffers>().target.framebuffer);
     const RayFunctionRow& row = rowOf(_features.rayFunction);
     GLfloat clearColor[4];
     glGetFloatv(GL_COLOR_CLEAR_VALUE, clearColor);
@@ -62,7 +61,7 @@ void RayTarget::resolve(const VolumeLook& look)
     if (!program) return;
     const Uniforms uniforms(_gl, *program);
     uniforms.set("rays", int(UNIT_RAYS));
-    _state.applyTextureAttribute(UNIT_RAYS, _resources.part<RayBuffers>().color.get());
+    _state.applyTextureAttribute(UNIT_RAYS, _resources.part<RayBuffers>().target.color.get());
     if (!_features.rgba) {
         uniforms.set("lookupTable", int(UNIT_TABLE));
         uniforms.set("valueToEntry", look.valueToEntry);
