@@ -309,40 +309,46 @@ def transform(w, name, rows):
     return lambda: (w.open("Matrix"), [w.line(r) for r in rows], w.close(2))
 
 
-def head_scene():
+def begin_scene(radius, center, children, upright_children):
+    """A writer that is at the things below the transform `upright`, what ends those, and the scene."""
     w = Writer()
     end_view = transform(w, "view", VIEW)
     w.open("Children 1")
-    end_frame = framed(w, 60, (0.0, 3.0, -10.0), 1)
+    end_frame = framed(w, radius, center, children)
     end_upright = transform(w, "upright", UPRIGHT)
-    w.open("Children 1")
+    w.open(f"Children {upright_children}")
     head(w)
-    w.close()
-    end_upright()
-    end_frame()
-    w.close()
-    end_view()
-    w.save("head.osgt")
+
+    def end_things():
+        w.close()
+        end_upright()
+
+    def end_scene(name):
+        end_frame()
+        w.close()
+        end_view()
+        w.save(name)
+
+    return w, end_things, end_scene
+
+
+def head_scene():
+    _, end_things, end_scene = begin_scene(60, (0.0, 3.0, -10.0), 1, 1)
+    end_things()
+    end_scene("head.osgt")
 
 
 def mixed_scene():
-    w = Writer()
+    w, end_things, end_scene = begin_scene(62, (0.0, 5.0, -7.0), 6, 2)
     frame = cap_frame()
     rim = frame[3]
-    end_view = transform(w, "view", VIEW)
-    w.open("Children 1")
-    end_frame = framed(w, 62, (0.0, 5.0, -7.0), 6)
-    end_upright = transform(w, "upright", UPRIGHT)
-    w.open("Children 2")
-    head(w)
     placed = (f"{ACTIVITY_SPACING} 0 0 0", f"0 {ACTIVITY_SPACING} 0 0", f"0 0 {ACTIVITY_SPACING} 0",
               numbers(ACTIVITY_ORIGIN) + " 1")
     appearance(w, "activity", "activation.tif", (ACTIVITY_SIZE,) * 3,
                [(0.0, 1, 1, 1, 0), (0.15, 1, 1, 1, 0), (0.4, 0.25, 0.9, 0.35, 0.85),
                 (0.75, 0.05, 0.55, 1.0, 1), (1.0, 0.1, 0.3, 1.0, 1)],
                shading=False, rule="PAINT", placed=placed)
-    w.close()
-    end_upright()
+    end_things()
     mesh(w, "implant", *cap(frame, 0.002, rim - RIM, RINGS), (0.6, 0.85, 1.0), 0.28, 0.9, 90)
     mesh(w, "rim", *joined([cap(frame, rim - RIM, rim, 2, 0.6), cap(frame, rim - RIM, rim, 2, -0.6)]),
          (0.72, 0.74, 0.78), 1.0, 0.7, 60)
@@ -356,10 +362,7 @@ def mixed_scene():
     mesh(w, "base", *revolved([(0.0, 0.0), (43.0, 0.0)], place, upwards), (0.55, 0.9, 0.8), 0.45, 0.8, 80)
     mesh(w, "base ring", *revolved([(42.6, 0.9), (44.4, 0.9), (45.0, 0.3), (45.0, -1.2), (42.6, -1.2), (42.6, 0.9)],
                                    place, upwards), (0.72, 0.74, 0.78), 1.0, 0.7, 60)
-    end_frame()
-    w.close()
-    end_view()
-    w.save("mixed.osgt")
+    end_scene("mixed.osgt")
 
 
 if __name__ == "__main__":

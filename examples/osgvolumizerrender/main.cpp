@@ -9,7 +9,6 @@
 
 #include <osgVolumizer/Version.h>
 
-#include <osg/DisplaySettings>
 #include <osg/Math>
 #include <osgUtil/Optimizer>
 
@@ -40,14 +39,6 @@ private:
     const Arguments& _arguments;
 };
 
-/// Vertical field of view that OSG's viewers begin with, in degrees.
-double fieldOfViewOfViewers()
-{
-    const osg::DisplaySettings& screen = *osg::DisplaySettings::instance();
-    return osg::RadiansToDegrees(
-        2.0 * std::atan(0.5 * screen.getScreenHeight() / screen.getScreenDistance()));
-}
-
 support::RenderOptions viewOf(const Arguments& arguments, const osg::BoundingSphere& bound)
 {
     support::RenderOptions options;
@@ -57,7 +48,7 @@ support::RenderOptions viewOf(const Arguments& arguments, const osg::BoundingSph
     if (arguments.orthographicHalfHeight)
         options.orthographic(*arguments.orthographicHalfHeight);
     else
-        options.perspective(arguments.fovyDegrees.value_or(fieldOfViewOfViewers()));
+        options.perspective(arguments.fovyDegrees.value_or(support::fieldOfViewOfViewers()));
     if (arguments.eye)
         options.lookAt(*arguments.eye, arguments.center.value_or(osg::Vec3d(bound.center())),
                        arguments.up.value_or(osg::Vec3d(0.0, 0.0, 1.0)));

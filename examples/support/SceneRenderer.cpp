@@ -1,5 +1,6 @@
 #include "SceneRenderer.h"
 
+#include <osg/DisplaySettings>
 #include <osg/Math>
 
 #include <algorithm>
@@ -21,6 +22,13 @@ void appendCounters(osg::Stats* stats, unsigned frame, std::map<std::string, dou
 }
 
 } // namespace
+
+double fieldOfViewOfViewers()
+{
+    const osg::DisplaySettings& screen = *osg::DisplaySettings::instance();
+    return osg::RadiansToDegrees(
+        2.0 * std::atan(0.5 * screen.getScreenHeight() / screen.getScreenDistance()));
+}
 
 RenderOptions& RenderOptions::size(int w, int h)
 {

@@ -14,6 +14,9 @@
 namespace osgVolumizer {
 namespace support {
 
+/// Vertical field of view that OSG's viewers begin with, in degrees.
+double fieldOfViewOfViewers();
+
 /// How a scene is looked at, and what is rendered to.
 struct RenderOptions
 {

@@ -1,13 +1,6 @@
 # Configures, builds and runs the project in SOURCE against the installation in PREFIX. With
 # WITHOUT_OSG, no header and no library of OSG or GL may be in what was built.
-function(run)
-  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${BINARY} RESULT_VARIABLE result
-                  OUTPUT_VARIABLE output ERROR_VARIABLE errors)
-  if(NOT result EQUAL 0)
-    message(FATAL_ERROR "${ARGN}: ${result}\n${output}${errors}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/Run.cmake)
 
 set(flags "")
 if(SANITIZE)

@@ -1,4 +1,6 @@
 // The files that are shipped: each has an origin, and is what it says it is.
+#include "SourceTree.h"
+
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
@@ -13,14 +15,6 @@
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path source = OSGVOLUMIZER_SOURCE_DIR;
-
-std::string textOf(const fs::path& file)
-{
-    std::ifstream stream(file);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 TEST(Data, EveryFileHasItsOriginInSources)
 {

@@ -1,4 +1,6 @@
 // Which packages of Debian are needed is said in one place, .ci/packages.sh.
+#include "SourceTree.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,14 +14,6 @@
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path source = OSGVOLUMIZER_SOURCE_DIR;
-
-std::string textOf(const fs::path& file)
-{
-    std::ifstream stream(file);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// A variable of .ci/packages.sh, as a shell sees it.
 std::string packages(const std::string& variable)

@@ -1,24 +1,17 @@
 # Programs are compiled by hand against PREFIX, with what its pkg-config file says and no more.
-function(run)
-  execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=OSG_LIBRARY_PATH
-                          PKG_CONFIG_PATH=${PREFIX}/${LIBRARIES}/pkgconfig
-                          LD_LIBRARY_PATH=${PREFIX}/${LIBRARIES} ${ARGN}
-                  WORKING_DIRECTORY ${BINARY} RESULT_VARIABLE result
-                  OUTPUT_VARIABLE output ERROR_VARIABLE errors)
-  if(NOT result EQUAL 0)
-    message(FATAL_ERROR "${ARGN}: ${result}\n${output}${errors}")
-  endif()
-  string(STRIP "${output}" output)
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/Run.cmake)
+set(RUN_ENVIRONMENT ${CMAKE_COMMAND} -E env --unset=OSG_LIBRARY_PATH
+    PKG_CONFIG_PATH=${PREFIX}/${LIBRARIES}/pkgconfig LD_LIBRARY_PATH=${PREFIX}/${LIBRARIES})
 
 file(REMOVE_RECURSE ${BINARY})
 file(MAKE_DIRECTORY ${BINARY})
 run(${PKG_CONFIG} --modversion osgVolumizer)
+string(STRIP "${output}" output)
 if(NOT output STREQUAL VERSION)
   message(SEND_ERROR "Version ${output}, expected ${VERSION}")
 endif()
 run(${PKG_CONFIG} --cflags --libs osgVolumizer)
+string(STRIP "${output}" output)
 separate_arguments(flags UNIX_COMMAND "${output}")
 if(SANITIZE)
   list(APPEND flags -fsanitize=${SANITIZE})

@@ -1,14 +1,7 @@
 # The tools in PREFIX run from there, and find libraries and plugins without being told of a folder.
-function(run)
-  execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH --unset=OSG_LIBRARY_PATH
-                          --unset=OSG_FILE_PATH ${ARGN}
-                  WORKING_DIRECTORY ${BINARY} RESULT_VARIABLE result
-                  OUTPUT_VARIABLE output ERROR_VARIABLE errors)
-  if(NOT result EQUAL 0)
-    message(FATAL_ERROR "${ARGN}: ${result}\n${output}${errors}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/Run.cmake)
+set(RUN_ENVIRONMENT ${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH --unset=OSG_LIBRARY_PATH
+    --unset=OSG_FILE_PATH)
 
 file(REMOVE_RECURSE ${BINARY})
 file(MAKE_DIRECTORY ${BINARY})

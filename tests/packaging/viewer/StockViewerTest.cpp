@@ -7,8 +7,6 @@
 #include <support/GLTest.h>
 #include <support/PictureFile.h>
 
-#include <osg/DisplaySettings>
-#include <osg/Math>
 #include <osgDB/ReadFile>
 #include <osgUtil/Optimizer>
 
@@ -27,14 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int WIDTH = 400, HEIGHT = 300;
-
-// Osgviewer's, vertically, in degrees: that of the screen that OSG assumes.
-double fieldOfView()
-{
-    const osg::DisplaySettings& screen = *osg::DisplaySettings::instance();
-    return osg::RadiansToDegrees(
-        2.0 * std::atan(0.5 * screen.getScreenHeight() / screen.getScreenDistance()));
-}
 
 std::size_t colourCount(const FloatImage& image)
 {
@@ -104,7 +94,9 @@ protected:
         if (!scene) return {};
         osgUtil::Optimizer().optimize(scene.get());
         RenderOptions options;
-        options.size(WIDTH, HEIGHT).perspective(fieldOfView()).frameScene(scene->getBound());
+        options.size(WIDTH, HEIGHT)
+            .perspective(fieldOfViewOfViewers())
+            .frameScene(scene->getBound());
         options.background.set(0.2f, 0.2f, 0.4f, 1.0f); // osgviewer's
         options.light = true;
         FloatImage image = renderScene(scene.get(), options);
@@ -117,10 +109,11 @@ protected:
     FloatImage written(const std::string& scene) const
     {
         const std::string file = (folder / "written.png").string();
-        const Outcome outcome = runProgram(
-            "osgvolumizerrender",
-            scene + " --size " + std::to_string(WIDTH) + " " + std::to_string(HEIGHT) + " --fovy " +
-                std::to_string(fieldOfView()) + " --background 0.2 0.2 0.4 1 --output " + file);
+        const Outcome outcome =
+            runProgram("osgvolumizerrender", scene + " --size " + std::to_string(WIDTH) + " " +
+                                                 std::to_string(HEIGHT) + " --fovy " +
+                                                 std::to_string(fieldOfViewOfViewers()) +
+                                                 " --background 0.2 0.2 0.4 1 --output " + file);
         EXPECT_EQ(outcome.code, 0) << outcome.text;
         const auto image = readFloatPicture(file);
         return image.ok() ? *image : FloatImage();
