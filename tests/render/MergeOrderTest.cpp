@@ -48,7 +48,7 @@ TEST_F(MergeOrder, OverlappingVolumes)
     scene.addVolume(makeVoxels(glm::ivec3(SIZE), bumps), COLD,
                     osg::Matrixd::rotate(0.5, osg::Vec3d(0.3, 1.0, 0.5)) *
                         osg::Matrixd::translate(9, 4, 6));
-    EXPECT_LE(swapped(scene, "volumes").maximum, 1e-3);
+    EXPECT_LE(swapped(scene, "volumes").maximum, 1e-6);
 }
 
 // Two of one place and shape, that no rule about depth can tell apart.
@@ -57,7 +57,7 @@ TEST_F(MergeOrder, CongruentVolumes)
     MixedScene scene;
     scene.addVolume(makeBlob(glm::ivec3(SIZE), 5.5), WARM);
     scene.addVolume(makeVoxels(glm::ivec3(SIZE), bumps), COLD);
-    EXPECT_LE(swapped(scene, "congruent").maximum, 1e-3);
+    EXPECT_LE(swapped(scene, "congruent").maximum, 1e-6);
 }
 
 TEST_F(MergeOrder, VolumesAndSurfaces)
@@ -72,25 +72,21 @@ TEST_F(MergeOrder, VolumesAndSurfaces)
                         osg::Matrixd::translate(9, 4, 6));
     scene.addQuad({glm::vec3(16, -4, -4), {16, 36, -4}, {16, 36, 36}, {16, -4, 36}},
                   {0.2, 0.3, 1.0, 0.5});
-    EXPECT_LE(swapped(scene, "surfaces").maximum, 1e-3);
+    EXPECT_LE(swapped(scene, "surfaces").maximum, 1e-6);
 }
 
-// Alternation leaves an error of second order, and nothing of the order of nodes, at any period.
-TEST_F(MergeOrder, NodeOrderFallsOutFasterThanTheStep)
+// The order of nodes falls out entirely, at any period.
+TEST_F(MergeOrder, NodeOrderFallsOut)
 {
-    std::vector<double> periods, errors;
-    for (double period : {2.0, 1.0, 0.5}) {
+    for (double period : {4.0, 2.0, 1.0, 0.5}) {
         MixedScene scene;
         scene.addVolume(makeBlob(glm::ivec3(SIZE), 5.5), WARM);
         scene.addVolume(makeVoxels(glm::ivec3(SIZE), bumps), COLD);
+        scene.addVolume(makeVoxels(glm::ivec3(SIZE), bumps), WARM,
+                        osg::Matrixd::translate(3, -5, 8));
         scene.setPeriod(period);
-        const Judged j = judge(scene, _options);
-        periods.push_back(period);
-        errors.push_back(j.away.rmse);
-        if (period == 1.0) save(j, "merge_order_congruent");
+        EXPECT_LE(swapped(scene, "three").maximum, 1e-6) << period;
     }
-    EXPECT_LE(errors[1], 4e-3);
-    EXPECT_GE(support::convergenceOrder(periods, errors), 1.9);
 }
 
 // The opacity of half of the extinction.
@@ -120,8 +116,8 @@ TEST_F(MergeOrder, TwoHalfDenseCopiesAreTheWhole)
     whole.addVolume(voxels, densePoints());
     halves.addVolume(voxels, halved(densePoints()));
     halves.addVolume(voxels, halved(densePoints()));
-    // Alone a volume is sampled along whole rays, with company in slabs: equal up to the error of
-    // sampling.
+    // Alone a ray's length is a whole number of steps, together it need not be: equal up to the
+    // error of sampling.
     whole.setPeriod(0.5);
     halves.setPeriod(0.5);
     const FloatImage one = picture(whole), two = picture(halves);

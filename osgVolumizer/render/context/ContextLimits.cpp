@@ -19,6 +19,18 @@ void changeByHooks(ContextLimits& limits, const osg::State& state)
     if (hooks && hooks->changeLimits) hooks->changeLimits(limits);
 }
 
+// What OSG has asked a context for.
+ContextLimits knownLimits(const osg::State& state)
+{
+    ContextLimits limits;
+    const osg::GLExtensions* gl = osg::GLExtensions::Get(state.getContextID(), false);
+    if (!gl) return limits;
+    limits.texture3DSize = gl->maxTexture3DSize;
+    limits.textureUnits = gl->glMaxTextureUnits;
+    changeByHooks(limits, state);
+    return limits;
+}
+
 std::string oneDecimal(double value)
 {
     const std::string text = std::to_string(value + 0.05);
@@ -47,6 +59,7 @@ ContextLimits queryContextLimits(osg::State& state)
         gl.glVersion >= 3.0f ||
         osg::isGLExtensionSupported(state.getContextID(), "GL_ARB_color_buffer_float");
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits.texture3DSize);
+    glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &limits.textureUnits);
     const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     limits.filtersFloatsBest = renderer && std::strstr(renderer, "llvmpipe");
     changeByHooks(limits, state);
@@ -55,12 +68,12 @@ ContextLimits queryContextLimits(osg::State& state)
 
 int texture3DSizeOf(const osg::State& state)
 {
-    const osg::GLExtensions* gl = osg::GLExtensions::Get(state.getContextID(), false);
-    if (!gl) return 0;
-    ContextLimits limits;
-    limits.texture3DSize = gl->maxTexture3DSize;
-    changeByHooks(limits, state);
-    return limits.texture3DSize;
+    return knownLimits(state).texture3DSize;
+}
+
+int textureUnitsOf(const osg::State& state)
+{
+    return knownLimits(state).textureUnits;
 }
 
 } // namespace render

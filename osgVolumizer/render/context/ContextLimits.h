@@ -12,6 +12,7 @@ struct ContextLimits
 {
     double version = 0.0;      ///< of OpenGL
     bool floatTargets = false; ///< drawing into 16- and 32-bit float textures
+    int textureUnits = 0;      ///< of a fragment shader
     int texture3DSize = 0;     ///< largest side of a 3D texture, texels; 0: there are none
     /// Float textures are filtered both faster and more exactly than others (llvmpipe, whose 8-bit
     /// path also rounds the result to 8 bits: an error of half a 255th of the type's range).
@@ -24,9 +25,10 @@ struct ContextLimits
 /// Asks the current context.
 ContextLimits queryContextLimits(osg::State& state);
 
-/// Largest side of a 3D texture of a context, by what OSG knows of it, so in any thread; 0 where it
-/// does not yet.
+/// What OSG knows of a context, in any thread: largest side of a 3D texture, and texture units of a
+/// fragment shader; 0 where it does not know yet.
 int texture3DSizeOf(const osg::State& state);
+int textureUnitsOf(const osg::State& state);
 
 } // namespace render
 } // namespace osgVolumizer

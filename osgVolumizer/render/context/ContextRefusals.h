@@ -3,11 +3,12 @@
 namespace osgVolumizer {
 namespace render {
 
-/// What a context has no memory for, and is composed without from the next frame on.
+/// What a context cannot do, or has no memory for, and is composed without from the next frame on.
 enum class Refusal : unsigned
 {
     CAPTURED_SURFACES = 1,
-    RANKED_SURFACES = 2
+    RANKED_SURFACES = 2,
+    FUSED_VOLUMES = 4
 };
 
 /// For cull threads, which have no context. Thread safe.

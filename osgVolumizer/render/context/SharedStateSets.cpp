@@ -14,15 +14,15 @@ std::mutex& setsMutex()
     return mutex;
 }
 
-std::map<std::uint64_t, osg::ref_ptr<osg::StateSet>>& sets()
+std::map<std::vector<std::uint64_t>, osg::ref_ptr<osg::StateSet>>& sets()
 {
-    static std::map<std::uint64_t, osg::ref_ptr<osg::StateSet>> map;
+    static std::map<std::vector<std::uint64_t>, osg::ref_ptr<osg::StateSet>> map;
     return map;
 }
 
 } // namespace
 
-osg::ref_ptr<osg::StateSet> sharedStateSet(std::uint64_t key,
+osg::ref_ptr<osg::StateSet> sharedStateSet(const std::vector<std::uint64_t>& key,
                                            const std::function<osg::ref_ptr<osg::StateSet>()>& make)
 {
     std::lock_guard<std::mutex> lock(setsMutex());

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 namespace osgVolumizer {
 namespace render {
@@ -26,7 +27,13 @@ enum class SharedState : std::uint64_t
 
 /// State sets that all volumes, views and contexts share, made when first asked for. Thread safe.
 osg::ref_ptr<osg::StateSet>
-sharedStateSet(std::uint64_t key, const std::function<osg::ref_ptr<osg::StateSet>()>& make);
+sharedStateSet(const std::vector<std::uint64_t>& key,
+               const std::function<osg::ref_ptr<osg::StateSet>()>& make);
+inline osg::ref_ptr<osg::StateSet>
+sharedStateSet(std::uint64_t key, const std::function<osg::ref_ptr<osg::StateSet>()>& make)
+{
+    return sharedStateSet(std::vector<std::uint64_t>{key}, make);
+}
 inline osg::ref_ptr<osg::StateSet>
 sharedStateSet(SharedState key, const std::function<osg::ref_ptr<osg::StateSet>()>& make)
 {

@@ -24,8 +24,10 @@ inline std::string uniformName(const std::string& name)
 class Uniforms
 {
 public:
-    Uniforms(osg::GLExtensions& gl, const osg::Program::PerContextProgram& program)
-        : _gl(gl), _program(program)
+    /// \param suffix of all names: see memberName()
+    Uniforms(osg::GLExtensions& gl, const osg::Program::PerContextProgram& program,
+             const std::string& suffix = {})
+        : _gl(gl), _program(program), _suffix(suffix)
     {
     }
     void set(const char* name, float v) const { _gl.glUniform1f(location(name), v); }
@@ -71,11 +73,12 @@ public:
 private:
     GLint location(const char* name) const
     {
-        return _program.getUniformLocation(osg::Uniform::getNameID(uniformName(name)));
+        return _program.getUniformLocation(osg::Uniform::getNameID(uniformName(name + _suffix)));
     }
 
     osg::GLExtensions& _gl;
     const osg::Program::PerContextProgram& _program;
+    const std::string _suffix;
 };
 
 } // namespace render

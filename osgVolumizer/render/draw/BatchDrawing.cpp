@@ -1,7 +1,6 @@
 #include "BatchDrawing.h"
 
 #include "../context/Allocation.h"
-#include "../context/ProgramInterface.h"
 #include "../context/ReportOnce.h"
 #include "../context/Uniforms.h"
 #include "../textures/BrickCells.h"
@@ -26,9 +25,10 @@ bool setVoxels(const BatchDrawing& drawing, const BrickBatch& batch)
 {
     CoarseTexture voxels;
     if (batch.joined) {
-        if (!batch.joined->apply(drawing.renderInfo, drawing.limits, UNIT_VOXELS)) return false;
+        if (!batch.joined->apply(drawing.renderInfo, drawing.limits, drawing.voxelUnit))
+            return false;
     } else if (batch.brick.texture) {
-        voxels = batch.brick.apply(drawing.renderInfo, drawing.limits, UNIT_VOXELS);
+        voxels = batch.brick.apply(drawing.renderInfo, drawing.limits, drawing.voxelUnit);
         if (!voxels.texture) return false;
     } else {
         return true;
@@ -42,12 +42,13 @@ void setCells(const BatchDrawing& drawing, const BrickCells* cells)
 {
     osg::State& state = *drawing.renderInfo.getState();
     bool known = cells && cells->texture;
-    if (known && !applyAllocated(state, AllocationRequest::CELLS, *cells->texture, UNIT_CELLS)) {
+    if (known &&
+        !applyAllocated(state, AllocationRequest::CELLS, *cells->texture, drawing.cellUnit)) {
         known = false;
         reportOnce({ErrorCode::TOO_LARGE, "what is empty in a brick is refused by the graphics "
                                           "card; nothing of the brick is leapt over"});
     }
-    if (!known) state.applyTextureAttribute(UNIT_CELLS, occupiedEverywhere());
+    if (!known) state.applyTextureAttribute(drawing.cellUnit, occupiedEverywhere());
     drawing.uniforms.set("cellOrigin", known ? cells->origin : glm::vec3(0.0f));
     drawing.uniforms.set("cellSize", known ? cells->cellSize : 1e6f);
 }
@@ -97,14 +98,10 @@ BrickBatch batchOf(const SelectedBrick& brick)
     return batch;
 }
 
-void drawBatch(const BatchDrawing& drawing, const BrickBatch& batch)
+bool setBatch(const BatchDrawing& drawing, const BrickBatch& batch)
 {
-    if (glm::any(glm::greaterThan(batch.clipMin, batch.clipMax))) return;
     const Uniforms& uniforms = drawing.uniforms;
-    if (!setVoxels(drawing, batch)) {
-        if (batch.joined) drawApart(drawing, batch);
-        return;
-    }
+    if (!setVoxels(drawing, batch)) return false;
     if (drawing.features.skipping) setCells(drawing, batch.cells.get());
     if (drawing.features.preIntegrated) {
         uniforms.set("brickMin", batch.brickMin);
@@ -113,6 +110,16 @@ void drawBatch(const BatchDrawing& drawing, const BrickBatch& batch)
     uniforms.set("homogeneous", batch.cells && batch.cells->homogeneous ? 1 : 0);
     uniforms.set("clipMin", batch.clipMin);
     uniforms.set("clipMax", batch.clipMax);
+    return true;
+}
+
+void drawBatch(const BatchDrawing& drawing, const BrickBatch& batch)
+{
+    if (glm::any(glm::greaterThan(batch.clipMin, batch.clipMax))) return;
+    if (!setBatch(drawing, batch)) {
+        if (batch.joined) drawApart(drawing, batch);
+        return;
+    }
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.indexCount), GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(std::size_t(batch.firstIndex) * sizeof(unsigned)));
 }

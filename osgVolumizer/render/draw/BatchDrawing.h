@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../context/ContextLimits.h"
+#include "../context/ProgramInterface.h"
 #include "ProgramFeatures.h"
 #include "VolumeMesh.h"
 
@@ -21,10 +22,14 @@ struct BatchDrawing
     const Uniforms& uniforms;
     const ProgramFeatures& features;
     const core::View& view;
+    unsigned voxelUnit = UNIT_VOXELS, cellUnit = UNIT_CELLS; ///< that textures are applied to
 };
 
 /// The batch of a brick, without triangles.
 BrickBatch batchOf(const SelectedBrick& brick);
+
+/// Gives the program textures and values of a batch; false where the card refuses the texture.
+bool setBatch(const BatchDrawing& drawing, const BrickBatch& batch);
 
 /// Draws the triangles of a batch from a mesh that is bound. What the card refuses is drawn the
 /// next best way: bricks that cannot share a texture one by one, far to near.

@@ -17,10 +17,6 @@ std::string paintSource(int count)
         product += " * paint" + number + "At(point)";
     }
     return source +
-           "\nvoid cut(vec2 ends, float t, inout float next)\n{\n"
-           "    if (ends.x >= ends.y) return;\n"
-           "    if (ends.x > t) next = min(next, ends.x);\n"
-           "    else if (ends.y > t) next = min(next, ends.y);\n}\n"
            "\n// The next place on a ray, after t and up to `end`, where paint begins or ends.\n"
            "float nextCut(vec3 origin, vec3 direction, float t, float end)\n{\n"
            "    float next = end;\n" +

@@ -37,6 +37,7 @@ constexpr Flag FLAGS[] = {
     {&ProgramFlags::skipping, "SKIPPING"},
     {&ProgramFlags::countSamples, "COUNT_SAMPLES"},
     {&ProgramFlags::coarse, "COARSE"},
+    {&ProgramFlags::inOrder, "IN_ORDER"},
 };
 // A flag without a row would be missing in the key, and programs would be taken for one another.
 static_assert(sizeof(ProgramFlags) == sizeof(bool) * std::size(FLAGS), "a row for each flag");

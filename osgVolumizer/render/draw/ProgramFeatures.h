@@ -32,6 +32,7 @@ struct ProgramFlags
     bool skipping = false;        ///< leap over cells that show nothing
     bool countSamples = false;    ///< draw the number of samples: see ViewHooks
     bool coarse = false;          ///< fewer rays than pixels: see CoarseImage
+    bool inOrder = false;         ///< of several that are marched: one after another, not together
 };
 
 /// What a volume's shader has to do; nothing that is not asked for is compiled in.

@@ -1,20 +1,23 @@
 #include "SubstituteProgram.h"
 
+#include "FusedVolumes.h"
 #include "VolumeProgram.h"
 
 namespace osgVolumizer {
 namespace render {
 
 SubstituteProgram::SubstituteProgram(osg::State& state, const AccumulationBuffers& buffers,
-                                     const ProgramFeatures& features)
+                                     const VolumePart& part)
     : _state(state)
 {
+    const ProgramFeatures& features = part.features;
     if (!features.needsSortedSurfaces() || buffers.sortedSurfaces[0]) return;
     ProgramFeatures plain = features;
     plain.slotCount = 0;
     plain.ranked = false;
     _before = state.getLastAppliedAttribute(osg::StateAttribute::PROGRAM);
-    _set = volumeStateSet(plain);
+    _set =
+        volumeStateSet(plain, part.fused ? part.fused->features() : std::vector<ProgramFeatures>());
     state.applyAttribute(_set->getAttribute(osg::StateAttribute::PROGRAM));
     state.applyAttribute(_set->getAttribute(osg::StateAttribute::BLENDFUNC));
     state.haveAppliedAttribute(osg::StateAttribute::BLENDFUNC);

@@ -16,7 +16,7 @@ class SubstituteProgram
 {
 public:
     SubstituteProgram(osg::State& state, const AccumulationBuffers& buffers,
-                      const ProgramFeatures& features);
+                      const VolumePart& part);
     SubstituteProgram(const SubstituteProgram&) = delete;
     SubstituteProgram& operator=(const SubstituteProgram&) = delete;
     ~SubstituteProgram();

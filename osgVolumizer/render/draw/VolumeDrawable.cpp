@@ -1,6 +1,7 @@
 #include "VolumeDrawable.h"
 
 #include "../../Error.h"
+#include "../context/ContextRefusals.h"
 #include "../context/ForeignState.h"
 #include "../context/Framebuffer.h"
 #include "../context/Matrices.h"
@@ -11,12 +12,14 @@
 #include "BatchDrawing.h"
 #include "BoundMesh.h"
 #include "CoarseImage.h"
+#include "FusedDrawing.h"
 #include "RayTarget.h"
 #include "SubstituteProgram.h"
 #include "VolumeUniforms.h"
 
 #include "../../core/sampling/View.h"
 
+#include <functional>
 #include <optional>
 
 namespace osgVolumizer {
@@ -37,15 +40,22 @@ void drawBatches(const BatchDrawing& drawing, const VolumeMesh& mesh)
         drawBatch(drawing, batch);
 }
 
+// Calls `draw` for each rectangle of a part, with a mesh bound.
+void drawRectangles(osg::State& state, ContextResources& resources, const VolumeMesh& mesh,
+                    const VolumePart& part, const std::function<void()>& draw)
+{
+    const BoundMesh bound(state, resources, mesh, static_cast<float>(part.step));
+    if (part.scissors.empty()) return draw();
+    const ScissorScope scissor;
+    for (const glm::ivec4& rectangle : part.scissors)
+        if (scissor.set(rectangle)) draw();
+}
+
 void drawRectangles(const BatchDrawing& drawing, ContextResources& resources,
                     const VolumeMesh& mesh, const VolumePart& part)
 {
-    const BoundMesh bound(*drawing.renderInfo.getState(), resources, mesh,
-                          static_cast<float>(part.step));
-    if (part.scissors.empty()) return drawBatches(drawing, mesh);
-    const ScissorScope scissor;
-    for (const glm::ivec4& rectangle : part.scissors)
-        if (scissor.set(rectangle)) drawBatches(drawing, mesh);
+    drawRectangles(*drawing.renderInfo.getState(), resources, mesh, part,
+                   [&]() { drawBatches(drawing, mesh); });
 }
 
 // Gathered values hide nothing, so they need no order, and no parts.
@@ -59,6 +69,17 @@ void gather(const BatchDrawing& drawing, ContextResources& resources, const Volu
     if (!target.made()) return;
     drawRectangles(drawing, resources, mesh, part);
     target.resolve(*part.look);
+}
+
+// Whether several volumes can be marched together by a program; if not, the next frames do without.
+bool canMarch(const FusedDrawing& drawing, const osg::Program::PerContextProgram* program)
+{
+    if (program && setMembers(drawing, *program)) return true;
+    refuse(drawing.renderInfo.getContextID(), Refusal::FUSED_VOLUMES);
+    reportOnce({ErrorCode::NOT_SUPPORTED,
+                "the context lacks texture units, memory or a compiler for volumes that overlap to "
+                "be marched together; they are drawn in thin slabs, which takes longer"});
+    return false;
 }
 
 void drawCoarse(CoarseImage& image, const glm::ivec4& viewport, const BatchDrawing& drawing,
@@ -97,9 +118,9 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     const AccumulationBuffers& buffers = resources->part<AccumulationBuffers>();
     if (buffers.drawBuffers.empty() || buffers.drawBuffers.front() == GL_NONE) return;
     const VolumeLook& look = *_part->look;
-    const SubstituteProgram substitute(state, buffers, _part->features);
+    const SubstituteProgram substitute(state, buffers, *_part);
     const auto* program = state.getLastAppliedProgramObject();
-    if (!substitute.isDrawn(*_part) || !program) return;
+    if (!substitute.isDrawn(*_part) || (!program && !_part->fused)) return;
     const core::View view{toGlm(state.getModelViewMatrix()), toGlm(state.getProjectionMatrix())};
     const glm::dvec4 viewport = currentViewport();
     std::optional<CoarseImage> image;
@@ -115,29 +136,48 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const FirstDrawBufferScope first(gl, buffers.drawBuffers);
     const ForeignStateScope foreign(state, true);
-    const Uniforms uniforms(gl, *program);
-    // Meshes for captured surfaces are in device coordinates.
-    const bool inDevice = _part->features.slotCount > 0;
-    uniforms.set("frameToClip", inDevice ? glm::dmat4(1.0) : view.projection * view.toEye);
-    setUniforms(state, uniforms, *_part, *rays, view.toEye, buffers);
-    if (look.table.texture && !applyTable(state, look.table.texture.get(), UNIT_TABLE)) return;
-    if (_part->paints)
-        setPaints(renderInfo, resources->limits, uniforms, *_part->paints, UNIT_FIRST_PAINT);
-    const BatchDrawing drawing{renderInfo, resources->limits, uniforms, _part->features, view};
-    if (_part->features.coarse) setOneRayPerPixel(uniforms, viewport);
-    if (image)
-        drawCoarse(*image, glm::ivec4(viewport), drawing, *resources, *_mesh, *_part);
-    else if (_part->features.gathers())
-        gather(drawing, *resources, *_mesh, *_part);
-    else
-        drawRectangles(drawing, *resources, *_mesh, *_part);
+    FusedDrawing fused{renderInfo, *resources, *_part, _part->above.toUsualClip * view.projection,
+                       image ? image->viewport() : viewport};
+    if (_part->fused && !canMarch(fused, program)) {
+        image.reset();
+        fused.viewport = viewport;
+        drawRectangles(state, *resources, *_mesh, *_part,
+                       [&]() { drawMembersApart(fused, _mesh->batches.front()); });
+    } else {
+        drawMarched(renderInfo, *program, *rays, view, image);
+    }
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
     reapplyInNextFrame(state);
     // OSG compares attributes by address: make it bind its own again whatever ours were.
-    for (unsigned unit : {UNIT_VOXELS, UNIT_TABLE, UNIT_OPAQUE_DEPTH, UNIT_SPLIT_DEPTH,
-                          UNIT_SORTED_FAR, UNIT_SORTED_NEAR, UNIT_CELLS})
+    for (unsigned unit = 0; unit < UNIT_COUNT; ++unit)
         state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+}
+
+void VolumeDrawable::drawMarched(osg::RenderInfo& renderInfo,
+                                 const osg::Program::PerContextProgram& program,
+                                 const PixelRays& rays, const core::View& view,
+                                 std::optional<CoarseImage>& image) const
+{
+    osg::State& state = *renderInfo.getState();
+    const std::shared_ptr<ContextResources> resources = contextResources(state);
+    const VolumeLook& look = *_part->look;
+    const Uniforms uniforms(*state.get<osg::GLExtensions>(), program);
+    // Meshes of a triangle over all pixels are in device coordinates.
+    const bool inDevice = _part->features.slotCount > 0 || _part->fused;
+    uniforms.set("frameToClip", inDevice ? glm::dmat4(1.0) : view.projection * view.toEye);
+    setUniforms(state, uniforms, *_part, rays, view.toEye, resources->part<AccumulationBuffers>());
+    if (look.table.texture && !applyTable(state, look.table.texture.get(), UNIT_TABLE)) return;
+    if (_part->paints)
+        setPaints(renderInfo, resources->limits, uniforms, *_part->paints, UNIT_FIRST_PAINT);
+    const BatchDrawing drawing{renderInfo, resources->limits, uniforms, _part->features, view};
+    if (_part->features.coarse) setOneRayPerPixel(uniforms, currentViewport());
+    if (image)
+        drawCoarse(*image, glm::ivec4(currentViewport()), drawing, *resources, *_mesh, *_part);
+    else if (_part->features.gathers())
+        gather(drawing, *resources, *_mesh, *_part);
+    else
+        drawRectangles(drawing, *resources, *_mesh, *_part);
 }
 
 } // namespace render

@@ -3,12 +3,19 @@
 #include "VolumeMesh.h"
 #include "VolumePart.h"
 
+#include "../../core/sampling/View.h"
+
 #include <osg/Drawable>
+#include <osg/Program>
 
 #include <memory>
+#include <optional>
 
 namespace osgVolumizer {
 namespace render {
+
+class CoarseImage;
+struct PixelRays;
 
 /// One leaf: a volume between two depths, drawn brick by brick, far to near. Made fresh for each
 /// view and frame, and never changed afterwards.
@@ -30,6 +37,10 @@ public:
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
 
 private:
+    void drawMarched(osg::RenderInfo& renderInfo, const osg::Program::PerContextProgram& program,
+                     const PixelRays& rays, const core::View& view,
+                     std::optional<CoarseImage>& image) const;
+
     std::shared_ptr<const VolumeMesh> _mesh;
     std::shared_ptr<const VolumePart> _part;
 };

@@ -11,6 +11,8 @@
 namespace osgVolumizer {
 namespace render {
 
+struct FusedVolumes;
+
 /// What one leaf draws of a volume. Immutable once it is given to a leaf.
 struct VolumePart
 {
@@ -19,9 +21,12 @@ struct VolumePart
         lights;                                       ///< of the stage, some perhaps off; or null
     std::shared_ptr<const std::vector<Paint>> paints; ///< null for none
     StateAbove above;
-    ProgramFeatures features;         ///< the look's, and what this part needs besides
-    double rayDistance = 1.0;         ///< pixels between rays: see CoarseImage
-    double step = 1.0;                ///< between samples or slices: depth, distance or frame units
+    ProgramFeatures features; ///< the look's, and what this part needs besides
+    double rayDistance = 1.0; ///< pixels between rays: see CoarseImage
+    double step = 1.0;        ///< between samples or slices: depth, distance or frame units
+    /// Several volumes that are marched together, or null. `look` and `features` are then those of
+    /// the march: table, voxels and paint are the members' own.
+    std::shared_ptr<const FusedVolumes> fused;
     std::vector<glm::ivec4> scissors; ///< window rectangles to draw in; none: everywhere
     glm::dvec3 surfaceNormal{0.0};    ///< slices: frame units; along which `step` is counted
     bool inFrontOfSplit = false;      ///< slabs: which part of a segment that surfaces split

@@ -4,6 +4,7 @@
 #include "../context/ShaderSource.h"
 #include "../context/SharedStateSets.h"
 #include "../context/Uniforms.h"
+#include "FusedSource.h"
 #include "Paint.h"
 #include "RayFunctions.h"
 
@@ -36,22 +37,32 @@ std::string withRayFunction(const char* file, VolumeAppearance::RayFunction func
     return source.replace(at, place.size(), rayShaderSource(function));
 }
 
-osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
+// The fragment shader's files.
+std::string fragmentSource(const ProgramFeatures& features,
+                           const std::vector<ProgramFeatures>& members)
+{
+    std::string source = shaderSource("march.glsl") + shaderSource("segment.glsl");
+    if (!members.empty())
+        return source + marchSource(members, features.inOrder) + shaderSource("ray.glsl") +
+               shaderSource("slab.frag.glsl");
+    if (features.slab) return source + marchSource(features) + shaderSource("slab.frag.glsl");
+    for (const std::string& file : volumeShaders())
+        source += shaderSource(file);
+    if (features.paintCount > 0) source += paintSource(features.paintCount);
+    return source + withRayFunction("slice.frag.glsl", features.rayFunction);
+}
+
+osg::ref_ptr<osg::Program> program(const ProgramFeatures& features,
+                                   const std::vector<ProgramFeatures>& members)
 {
     const std::string kind = features.slab ? "slab" : "slice";
-    const std::string header =
-        VERSION + features.defines() + (features.slab ? "" : "#define SLICE\n");
+    const std::string header = VERSION + features.defines() +
+                               (features.slab ? "" : "#define SLICE\n") +
+                               (members.empty() ? "" : "#define FUSED\n");
     osg::ref_ptr<osg::Program> result = new osg::Program;
     result->setName("osgVolumizer " + kind);
     result->addShader(makeShader(osg::Shader::VERTEX, header, shaderSource(kind + ".vert.glsl")));
-    std::string fragment;
-    for (const char* file : {"voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl",
-                             "skipping.glsl", "segment.glsl"})
-        fragment += shaderSource(file);
-    if (features.paintCount > 0) fragment += paintSource(features.paintCount);
-    fragment +=
-        withRayFunction(features.slab ? "slab.frag.glsl" : "slice.frag.glsl", features.rayFunction);
-    result->addShader(makeShader(osg::Shader::FRAGMENT, header, fragment));
+    result->addShader(makeShader(osg::Shader::FRAGMENT, header, fragmentSource(features, members)));
     return result;
 }
 
@@ -74,13 +85,14 @@ void keepFacesWhole(osg::StateSet& set)
         set.setMode(GL_CLIP_PLANE0 + plane, KEPT_OFF);
 }
 
-osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
+osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features,
+                                         const std::vector<ProgramFeatures>& members)
 {
     using osg::StateAttribute;
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
     set->setName("osgVolumizer");
     set->setDataVariance(osg::Object::STATIC);
-    set->setAttributeAndModes(program(features), KEPT);
+    set->setAttributeAndModes(program(features, members), KEPT);
     // What surfaces leave in the target's alpha need not be what they take of the light behind.
     constexpr GLenum SOURCE1_COLOR = 0x88F9;
     const bool captured = features.slotCount > 0;
@@ -90,8 +102,10 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
                            twoOutputs ? SOURCE1_COLOR : GLenum(GL_ONE_MINUS_SRC_ALPHA)),
         KEPT);
     set->setAttribute(new osg::BlendEquation(osg::BlendEquation::FUNC_ADD), KEPT);
+    const bool overPixels = captured || !members.empty();
     set->setAttributeAndModes(
-        new osg::Depth(captured ? osg::Depth::ALWAYS : osg::Depth::LEQUAL, 0.0, 1.0, false), KEPT);
+        new osg::Depth(overPixels ? osg::Depth::ALWAYS : osg::Depth::LEQUAL, 0.0, 1.0, false),
+        KEPT);
     // OSG's transparent bins drop fragments of alpha 0, which may still carry colour.
     set->setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::ALWAYS, 0.0f), KEPT_OFF);
     // Segments end at near and far themselves: rounding must not cut off the face on the near
@@ -115,7 +129,16 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features)
 
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
 {
-    return sharedStateSet(features.key(), [&features]() { return makeStateSet(features); });
+    return volumeStateSet(features, {});
+}
+
+osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features,
+                                           const std::vector<ProgramFeatures>& members)
+{
+    std::vector<std::uint64_t> key{features.key()};
+    for (const ProgramFeatures& member : members)
+        key.push_back(member.key());
+    return sharedStateSet(key, [&]() { return makeStateSet(features, members); });
 }
 
 osg::ref_ptr<osg::StateSet> depthTestStateSet(const DepthTest& test)

@@ -1,12 +1,14 @@
 #include "MergedGroup.h"
 
 #include "../../Error.h"
+#include "../context/ContextRefusals.h"
 #include "../context/LeafState.h"
 #include "../context/Matrices.h"
 #include "../context/ScreenPass.h"
 #include "../context/SharedStateSets.h"
 #include "../draw/VolumeProgram.h"
 #include "../volume/SlabMesh.h"
+#include "FuseVolumes.h"
 #include "ScreenAreas.h"
 
 #include <osg/ColorMask>
@@ -33,6 +35,27 @@ bool comesFirst(const VolumeInstance* a, const VolumeInstance* b)
     return std::lexicographical_compare(m.ptr(), m.ptr() + 16, n.ptr(), n.ptr() + 16);
 }
 
+// Intervals as depths from a march's reference depth, the outermost to the ends of its volumes.
+std::vector<core::DepthInterval> fromReference(const MergedVolume& volume,
+                                               std::vector<core::DepthInterval> intervals)
+{
+    const double reference = volume.look->referenceDepth;
+    for (core::DepthInterval& interval : intervals) {
+        if (interval.nearDepth <= volume.depth.nearDepth)
+            interval.nearDepth = volume.wholeDepth.nearDepth;
+        if (interval.farDepth >= volume.depth.farDepth)
+            interval.farDepth = volume.wholeDepth.farDepth;
+        interval = {interval.nearDepth - reference, interval.farDepth - reference};
+    }
+    return intervals;
+}
+
+glm::ivec4 intersection(const glm::ivec4& a, const glm::ivec4& b)
+{
+    const int x = std::max(a[0], b[0]), y = std::max(a[1], b[1]);
+    return {x, y, std::min(a[0] + a[2], b[0] + b[2]) - x, std::min(a[1] + a[3], b[1] + b[3]) - y};
+}
+
 } // namespace
 
 MergedGroup::MergedGroup(const MergeGroup& group, const MergeFrame& frame, LeafList& untouched)
@@ -40,17 +63,25 @@ MergedGroup::MergedGroup(const MergeGroup& group, const MergeFrame& frame, LeafL
 {
     prepareVolumes(group);
     prepareSurfaces(group, untouched);
+    fuse(!_surfaces.empty());
 }
 
 bool MergedGroup::prepare(VolumeInstance& instance, bool mergeable, MergedVolume& volume) const
 {
     volume.instance = &instance;
     volume.view = {toGlm(*instance.leaf->_modelview), toGlm(usualProjection(*instance.leaf))};
+    volume.look = instance.look;
+    volume.depth = instance.depth;
+    volume.wholeDepth = instance.wholeDepth;
+    volume.step = instance.look->step;
+    volume.rayDistance = instance.rayDistance;
+    volume.screen = viewOf(instance).screen;
     if (instance.look->features.slab) return true;
     volume.sliced = std::make_unique<SlicedVolume>();
     const Status status = volume.sliced->polygonize(instance, volume.view, mergeable);
     if (volume.sliced->polygonized()) ++_frame.counts.polygonizations;
     reportError(status);
+    volume.step = volume.sliced->spacing();
     return status.ok();
 }
 
@@ -63,9 +94,17 @@ void MergedGroup::prepareVolumes(const MergeGroup& group)
     for (VolumeInstance* instance : instances) {
         MergedVolume volume;
         if (!prepare(*instance, mergeable, volume)) continue;
-        _step = std::min(_step, volume.sliced ? volume.sliced->spacing() : instance->look->step);
+        _step = std::min(_step, volume.step);
         _volumes.push_back(std::move(volume));
     }
+}
+
+void MergedGroup::fuse(bool splitBricks)
+{
+    if (isRefused(_frame.contextId, Refusal::FUSED_VOLUMES)) return;
+    FuseLimits limits;
+    if (_frame.textureUnits > 0) limits.textureUnits = _frame.textureUnits;
+    fuseVolumes(_volumes, limits, splitBricks);
 }
 
 VolumeOutline MergedGroup::outlineOf(const VolumeInstance& volume) const
@@ -132,10 +171,34 @@ glm::ivec4 MergedGroup::areaOf(const MergeRegion& region) const
     return region.rectangles.empty() ? _frame.viewport : region.rectangles.front();
 }
 
+// What of a region a march covers.
+std::vector<glm::ivec4> MergedGroup::areasOf(const MergeRegion& region,
+                                             const MergedVolume& volume) const
+{
+    const glm::ivec4 covered = pixelRectangle(volume.screen, _frame.viewport, 2);
+    if (region.rectangles.empty()) return {covered};
+    std::vector<glm::ivec4> areas;
+    for (const glm::ivec4& rectangle : region.rectangles) {
+        const glm::ivec4 area = intersection(rectangle, covered);
+        if (area[2] > 0 && area[3] > 0) areas.push_back(area);
+    }
+    // None would mean everywhere.
+    if (areas.empty()) areas.emplace_back(0, 0, 0, 0);
+    return areas;
+}
+
 VolumePart MergedGroup::partIn(const MergeRegion& region, const MergedVolume& volume) const
 {
     VolumePart part = partOf(*volume.instance);
     part.scissors = region.rectangles;
+    if (volume.fused) {
+        part.look = volume.look;
+        part.features = volume.look->features;
+        part.fused = volume.fused;
+        part.lights = nullptr;
+        part.paints = nullptr;
+        part.scissors = areasOf(region, volume);
+    }
     if (volume.sliced) {
         part.step = volume.sliced->spacing();
         part.surfaceNormal = volume.sliced->surfaceNormal();
@@ -150,7 +213,7 @@ VolumePart MergedGroup::partIn(const MergeRegion& region, const MergedVolume& vo
 VolumePart MergedGroup::wholeIn(const MergeRegion& region, const MergedVolume& volume) const
 {
     VolumePart part = partIn(region, volume);
-    part.rayDistance = volume.instance->rayDistance;
+    part.rayDistance = volume.rayDistance;
     part.features.coarse = part.rayDistance > 1.0 && part.features.slab &&
                            !part.features.gathers() && !part.features.countSamples;
     return part;
@@ -160,10 +223,16 @@ std::shared_ptr<const VolumeMesh>
 MergedGroup::meshOf(const MergedVolume& volume,
                     const std::vector<core::DepthInterval>& farToNear) const
 {
+    if (volume.fused) return screenMesh({}, fromReference(volume, farToNear));
     if (!volume.sliced) return slabMesh(*volume.instance, volume.view, farToNear);
     if (isAlone()) return volume.sliced->mesh(*volume.instance);
     return volume.sliced->mesh(*volume.instance,
                                {farToNear.back().nearDepth, farToNear.front().farDepth});
+}
+
+std::shared_ptr<const VolumeMesh> MergedGroup::screenMeshOf(const MergedVolume& volume) const
+{
+    return volume.fused ? meshOf(volume, {volume.depth}) : screenMesh(*volume.instance);
 }
 
 void MergedGroup::addVolume(const MergedVolume& volume, std::shared_ptr<const VolumeMesh> mesh,
@@ -176,7 +245,9 @@ void MergedGroup::addVolume(const MergedVolume& volume, std::shared_ptr<const Vo
     _frame.counts.polygons += static_cast<double>(mesh->indexArray().size() / 3);
     ++_frame.counts.volumeLeaves;
     osgUtil::StateGraph* graph = instance.leaf->_parent;
-    const osg::ref_ptr<osg::StateSet> set = volumeStateSet(part->features);
+    const osg::ref_ptr<osg::StateSet> set =
+        volume.fused ? volumeStateSet(part->features, volume.fused->features())
+                     : volumeStateSet(part->features);
     if (graph->getStateSet() != set) graph = graph->_parent->find_or_insert(set);
     if (!part->above.depthTest.isUsual() && part->features.slotCount == 0)
         graph = graph->find_or_insert(depthTestStateSet(part->above.depthTest));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../draw/Accumulation.h"
+#include "../draw/FusedVolumes.h"
 #include "../volume/SlicedVolume.h"
 #include "FrameCounts.h"
 #include "LeafList.h"
@@ -18,15 +19,26 @@ struct MergeFrame
 {
     glm::ivec4 viewport{0}; ///< x, y, width, height in pixels
     unsigned contextId = 0; ///< of the context that will draw
+    int textureUnits = 0;   ///< of its fragment shaders; 0 where that is not known yet
     Accumulation& accumulation;
     FrameCounts& counts;
 };
 
+/// A volume, or several that are marched together and so are as good as one.
 struct MergedVolume
 {
-    VolumeInstance* instance = nullptr;
+    VolumeInstance* instance = nullptr; ///< of several the one whose leaf stands for all
     core::View view;
-    std::unique_ptr<SlicedVolume> sliced; ///< null for slabs
+    std::unique_ptr<SlicedVolume> sliced;      ///< null for slabs
+    std::shared_ptr<const FusedVolumes> fused; ///< null for one volume by itself
+    std::shared_ptr<const VolumeLook> look;    ///< of the volume, or of the march
+    core::DepthInterval depth, wholeDepth;     ///< see VolumeInstance
+    double step = 0.0;                         ///< eye units of depth
+    double rayDistance = 1.0;                  ///< pixels
+    ScreenRectangle screen;                    ///< that it covers
+
+    /// Whether it is drawn by one program at once.
+    bool isOne() const { return fused || (!sliced && instance->bricks.size() == 1); }
 };
 
 struct MergedSurface
@@ -62,8 +74,8 @@ public:
     /// Of the finest volume: eye units of depth.
     double step() const { return _step; }
     /// That groups which are drawn as a whole are sorted by: eye units.
-    double depth() const { return _volumes.front().instance->look->referenceDepth; }
-    /// Whether there is one volume and nothing else.
+    double depth() const { return _volumes.front().look->referenceDepth; }
+    /// Whether there is one volume, or one march, and nothing else.
     bool isAlone() const { return _volumes.size() == 1 && _surfaces.empty(); }
 
     /// Rectangles around surfaces that overlap each other on the screen, so that only pixels that
@@ -76,6 +88,8 @@ public:
     VolumePart partIn(const MergeRegion& region, const MergedVolume& volume) const;
     /// The same for one leaf that draws it at once, perhaps with fewer rays than pixels.
     VolumePart wholeIn(const MergeRegion& region, const MergedVolume& volume) const;
+    /// All of a volume for a shader that finds its part of the ray itself; expects isOne().
+    std::shared_ptr<const VolumeMesh> screenMeshOf(const MergedVolume& volume) const;
     /// The faces of a volume in some intervals, far to near.
     std::shared_ptr<const VolumeMesh>
     meshOf(const MergedVolume& volume, const std::vector<core::DepthInterval>& farToNear) const;
@@ -95,7 +109,9 @@ public:
 private:
     bool prepare(VolumeInstance& instance, bool mergeable, MergedVolume& volume) const;
     void prepareVolumes(const MergeGroup& group);
+    void fuse(bool splitBricks);
     void prepareSurfaces(const MergeGroup& group, LeafList& untouched);
+    std::vector<glm::ivec4> areasOf(const MergeRegion& region, const MergedVolume& volume) const;
     VolumeOutline outlineOf(const VolumeInstance& volume) const;
 
     const MergeFrame _frame;

@@ -1,5 +1,6 @@
 #include "Merger.h"
 
+#include "../context/ContextLimits.h"
 #include "../context/Statistics.h"
 #include "../draw/AccumulationLeaf.h"
 #include "AccumulationNeeds.h"
@@ -80,7 +81,10 @@ Merger* Merger::of(osgUtil::RenderBin& innermost, osgUtil::CullVisitor& visitor)
     merger->_camera = visitor.getCurrentCamera();
     merger->_frameStamp = visitor.getFrameStamp();
     merger->_viewport = visitor.getViewport();
-    if (const osg::State* state = visitor.getState()) merger->_contextId = state->getContextID();
+    if (const osg::State* state = visitor.getState()) {
+        merger->_contextId = state->getContextID();
+        merger->_textureUnits = textureUnitsOf(*state);
+    }
     bin.setSortCallback(merger);
     return merger;
 }
@@ -117,7 +121,7 @@ void Merger::merge(const osgUtil::RenderBin& bin, BinLeaves& leaves,
     const osg::ref_ptr<Accumulation> accumulation = makeAccumulation();
     LeafList made;
     for (const MergeGroup& group : groups.groups)
-        composeGroup(group, {viewport(), _contextId, *accumulation, counts}, made);
+        composeGroup(group, {viewport(), _contextId, _textureUnits, *accumulation, counts}, made);
     for (const VolumeInstance* volume : visible)
         for (const SelectedBrick& brick : volume->bricks)
             counts.bricksDrawn += brick.brickCount;

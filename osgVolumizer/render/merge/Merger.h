@@ -51,6 +51,7 @@ private:
     osg::observer_ptr<const osg::Camera> _camera; ///< holds the bin, and so this
     osg::ref_ptr<const osg::FrameStamp> _frameStamp;
     osg::ref_ptr<const osg::Viewport> _viewport; ///< of the volume that came first
+    int _textureUnits = 0;
     unsigned _contextId = 0;
     bool _oneViewport = true; ///< is that of all volumes
 };

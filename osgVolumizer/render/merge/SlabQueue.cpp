@@ -37,7 +37,7 @@ std::vector<core::ScheduledInterval> scheduleOf(const MergedGroup& group,
     std::vector<core::ScheduleMember> members;
     core::ScheduleLimits limits;
     for (const MergedVolume& volume : group.volumes()) {
-        members.push_back({volume.instance->depth, true, group.step()});
+        members.push_back({volume.depth, true, group.step()});
         // A slice has no inside that surfaces could split.
         if (volume.sliced) limits.surfaceSteps = 1.0;
     }

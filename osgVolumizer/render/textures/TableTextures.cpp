@@ -24,9 +24,11 @@ namespace {
 
 constexpr double BITS = 1.0 / 0.6931471805599453; // of extinction, in units of -ln(transmittance)
 
-// Few enough to stay in a cache, and to be made in a millisecond; so many that the nearest one
-// hardly differs.
-constexpr int ENTRIES = 16384;
+// As few as stay in a cache; so many that the nearest one hardly differs.
+constexpr int FEWEST_ENTRIES = 1024, ENTRIES = 16384, MOST_ENTRIES = 65536;
+// What emission and extinction may differ by from entry to entry, bits per opacity unit: rays of a
+// hundred samples are then off by some 1e-6. Fine tables are for as many more samples.
+constexpr double ENTRY_STEP = 4e-6, FINE_ENTRY_STEP = 1e-6;
 
 // Bits times entries: differences of floats that are not larger are good to 1e-4 bits.
 constexpr float LARGEST_INTEGRAL = 8192.0f;
@@ -44,6 +46,24 @@ bool needsPreIntegration(const core::TransferFunction& function, const std::stri
              << "th of it apart miss the mean of what lies between by " << error.error << "."
              << std::endl;
     return true;
+}
+
+// How many entries a function needs where the nearest one is taken.
+int entriesFor(const core::TransferFunction& function, bool fine)
+{
+    const std::vector<glm::vec4> texels =
+        function.tabulateExtinction(FEWEST_ENTRIES, 0.0, 1.0, false);
+    double steepest = 0.0; // bits from one of these entries to the next
+    for (std::size_t i = 1; i < texels.size(); ++i) {
+        const glm::dvec4 a(texels[i - 1]), b(texels[i]);
+        const glm::dvec3 emission = glm::abs(glm::dvec3(b) * b.a - glm::dvec3(a) * a.a);
+        steepest = std::max({steepest, std::abs(b.a - a.a), emission.x, emission.y, emission.z});
+    }
+    const double needed = steepest * BITS * FEWEST_ENTRIES / (fine ? FINE_ENTRY_STEP : ENTRY_STEP);
+    int entries = FEWEST_ENTRIES;
+    while (entries < needed && entries < (fine ? MOST_ENTRIES : ENTRIES))
+        entries *= 2;
+    return entries;
 }
 
 osg::ref_ptr<osg::TextureBuffer> makeTexture(const std::vector<glm::vec4>& texels)
@@ -74,7 +94,7 @@ void countShown(const std::vector<glm::vec4>& texels, TableTexture& table)
 }
 
 std::shared_ptr<const TableTexture> makeTable(const LookupTable& table, const osg::Vec2d& range,
-                                              VolumeAppearance::Lookup lookup)
+                                              VolumeAppearance::Lookup lookup, bool fine)
 {
     static std::atomic<unsigned> nextId{1};
     auto made = std::make_shared<TableTexture>();
@@ -84,8 +104,9 @@ std::shared_ptr<const TableTexture> makeTable(const LookupTable& table, const os
     result.integrals = lookup == VolumeAppearance::PREINTEGRATED ||
                        (lookup == VolumeAppearance::AUTOMATIC_LOOKUP &&
                         needsPreIntegration(*result.function, table.getName()));
-    result.count = ENTRIES;
-    std::vector<glm::vec4> texels = result.function->tabulateExtinction(ENTRIES, 0.0, 1.0, false);
+    result.count = result.integrals ? ENTRIES : entriesFor(*result.function, fine);
+    std::vector<glm::vec4> texels =
+        result.function->tabulateExtinction(result.count, 0.0, 1.0, false);
     for (glm::vec4& t : texels)
         t.a *= static_cast<float>(BITS);
     const auto emission = [](const glm::vec4& t) { return glm::vec4(glm::vec3(t) * t.a, t.a); };
@@ -111,9 +132,11 @@ struct TableKey
     unsigned modifiedCount;
     osg::Vec2d range;
     VolumeAppearance::Lookup lookup;
+    bool fine;
     bool operator==(const TableKey& o) const
     {
-        return modifiedCount == o.modifiedCount && range == o.range && lookup == o.lookup;
+        return modifiedCount == o.modifiedCount && range == o.range && lookup == o.lookup &&
+               fine == o.fine;
     }
 };
 
@@ -133,7 +156,7 @@ public:
         for (const auto& known : _tables)
             if (known.first == key) result = known.second.lock();
         if (result) return result;
-        result = makeTable(table, key.range, key.lookup);
+        result = makeTable(table, key.range, key.lookup, key.fine);
         _tables.emplace_front(key, result);
         return result;
     }
@@ -177,15 +200,15 @@ bool applyTable(osg::State& state, osg::TextureBuffer* texture, unsigned unit)
 }
 
 TableTexture TableTextures::get(const LookupTable& table, const osg::Vec2d& range,
-                                VolumeAppearance::Lookup lookup)
+                                VolumeAppearance::Lookup lookup, bool fine)
 {
     if (lookup == VolumeAppearance::BEFORE_INTERPOLATION)
         lookup = VolumeAppearance::AFTER_INTERPOLATION;
     const unsigned modified = table.getModifiedCount();
-    const Key key{&table, modified, range, lookup};
+    const Key key{&table, modified, range, lookup, fine};
     std::lock_guard<std::mutex> lock(_mutex);
     if (const auto* known = _tables.find(key)) return **known;
-    return *_tables.add(key, SharedTables::of(table)->get(table, {modified, range, lookup}));
+    return *_tables.add(key, SharedTables::of(table)->get(table, {modified, range, lookup, fine}));
 }
 
 void TableTextures::resizeGLObjectBuffers(unsigned int maximum)

@@ -45,9 +45,10 @@ bool applyTable(osg::State& state, osg::TextureBuffer* texture, unsigned unit);
 class TableTextures
 {
 public:
+    /// \param fine for several samples a voxel
     /// BEFORE_INTERPOLATION needs what AFTER_INTERPOLATION needs.
     TableTexture get(const LookupTable& table, const osg::Vec2d& range,
-                     VolumeAppearance::Lookup lookup);
+                     VolumeAppearance::Lookup lookup, bool fine = false);
     void resizeGLObjectBuffers(unsigned int maximum);
     void releaseGLObjects(osg::State* state) const;
 
@@ -58,10 +59,11 @@ private:
         unsigned modifiedCount;
         osg::Vec2d range;
         VolumeAppearance::Lookup lookup;
+        bool fine;
         bool operator==(const Key& o) const
         {
             return table == o.table && modifiedCount == o.modifiedCount && range == o.range &&
-                   lookup == o.lookup;
+                   lookup == o.lookup && fine == o.fine;
         }
     };
     static constexpr std::size_t CAPACITY = 3;

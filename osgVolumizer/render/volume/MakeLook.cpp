@@ -106,9 +106,9 @@ void setInterpolation(const VolumeAppearance& appearance, const TableTexture& ta
     features.before = looksUpBefore(appearance, features.rayFunction, interpolation);
     features.preIntegrated = table.integrals;
     features.shortRuns = table.integrals && table.shortRuns;
-    // At a period of a voxel and more what the nearest entry is off by does not count.
+    // Elsewhere tables are so fine that what the nearest entry is off by does not count.
     features.smoothTable =
-        !table.integrals && (appearance.getExactFiltering() || voxelsPerSample < 0.999);
+        !table.integrals && (appearance.getExactFiltering() || voxelsPerSample < 0.2);
 }
 
 void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& prepared,

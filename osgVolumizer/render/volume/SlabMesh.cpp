@@ -144,22 +144,33 @@ std::shared_ptr<const VolumeMesh> slabMesh(const VolumeInstance& volume, const c
     return builder.take();
 }
 
-std::shared_ptr<const VolumeMesh> screenMesh(const VolumeInstance& volume)
+std::shared_ptr<const VolumeMesh> screenMesh(const BrickBatch& batch,
+                                             const std::vector<core::DepthInterval>& farToNear)
 {
     auto mesh = std::make_shared<VolumeMesh>();
     mesh->stride = SLAB_STRIDE;
     mesh->slabOffset = 3;
-    const double reference = volume.look->referenceDepth;
-    const float nearest = static_cast<float>(volume.wholeDepth.nearDepth - reference),
-                farthest = static_cast<float>(volume.wholeDepth.farDepth - reference);
-    for (const glm::vec2 corner :
-         {glm::vec2(-1.0f), glm::vec2(3.0f, -1.0f), glm::vec2(-1.0f, 3.0f)})
-        mesh->vertices.insert(mesh->vertices.end(), {corner.x, corner.y, 0.0f, nearest, farthest});
-    mesh->indices = {0, 1, 2};
-    mesh->batches.push_back(batchOf(volume.bricks.front()));
-    mesh->batches.back().indexCount = 3;
-    mesh->faceCount = 1;
+    mesh->batches.push_back(batch);
+    mesh->batches.back().firstIndex = 0;
+    for (const core::DepthInterval& interval : farToNear) {
+        for (const glm::vec2 corner :
+             {glm::vec2(-1.0f), glm::vec2(3.0f, -1.0f), glm::vec2(-1.0f, 3.0f)}) {
+            mesh->indices.push_back(static_cast<unsigned>(mesh->vertices.size() / SLAB_STRIDE));
+            mesh->vertices.insert(
+                mesh->vertices.end(),
+                {corner.x, corner.y, 0.0f, float(interval.nearDepth), float(interval.farDepth)});
+        }
+        ++mesh->faceCount;
+    }
+    mesh->batches.back().indexCount = static_cast<unsigned>(mesh->indices.size());
     return mesh;
+}
+
+std::shared_ptr<const VolumeMesh> screenMesh(const VolumeInstance& volume)
+{
+    const double reference = volume.look->referenceDepth;
+    return screenMesh(batchOf(volume.bricks.front()), {{volume.wholeDepth.nearDepth - reference,
+                                                        volume.wholeDepth.farDepth - reference}});
 }
 
 } // namespace render

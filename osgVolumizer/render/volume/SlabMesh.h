@@ -14,8 +14,12 @@ namespace render {
 std::shared_ptr<const VolumeMesh> slabMesh(const VolumeInstance& volume, const core::View& view,
                                            const std::vector<core::DepthInterval>& farToNear);
 
-/// The whole of a volume of one brick as one triangle over the viewport, in device coordinates, for
-/// a shader that finds the ray's part of the volume itself. See ProgramFeatures::slotCount.
+/// A triangle over the viewport for each of some intervals (depths from the reference depth, far to
+/// near), in device coordinates, for a shader that finds the ray's part of the volume itself. See
+/// ProgramFeatures::slotCount.
+std::shared_ptr<const VolumeMesh> screenMesh(const BrickBatch& batch,
+                                             const std::vector<core::DepthInterval>& farToNear);
+/// The same for the whole of a volume of one brick.
 std::shared_ptr<const VolumeMesh> screenMesh(const VolumeInstance& volume);
 
 } // namespace render

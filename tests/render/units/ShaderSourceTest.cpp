@@ -52,3 +52,25 @@ TEST(ShaderSource, FilesAreKnownByTheirPathsBelowShaders)
     EXPECT_EQ(shaderSource("sum.glsl"), "");
     EXPECT_EQ(shaderSource("nothing.glsl"), "");
 }
+
+TEST(ShaderSource, NamesOfCodeAreThoseAtFileScope)
+{
+    const std::string code = "uniform vec3 low, high; // of the box\n"
+                             "#define LENGTH vec3(1.0)\n#define CHANNEL(t) (t).r\n"
+                             "const float SAME = 1e-4;\nfloat entry, run[4];\n"
+                             "#ifdef FLAG\nvec4 valueAt(vec3 place, float bias)\n{\n"
+                             "    float local = 1.0;\n    return vec4(local);\n}\n#endif\n";
+    const std::set<std::string> expected = {"low",  "high",  "LENGTH", "CHANNEL",
+                                            "SAME", "entry", "run",    "valueAt"};
+    EXPECT_EQ(namesIn(code), expected);
+}
+
+TEST(ShaderSource, CodeWithASuffixHasNoNameOfTheCodeWithout)
+{
+    const std::string code = "uniform float step;\nfloat twice(float x) { return x + step; }\n";
+    EXPECT_EQ(withSuffix(code, "_3"),
+              "uniform float step_3;\nfloat twice_3(float x) { return x + step_3; }\n");
+    // Names in names, and of fields, stay.
+    EXPECT_EQ(withSuffix("stepped = step.x + my_step;", "_1", {"step"}),
+              "stepped = step_1.x + my_step;");
+}

@@ -24,3 +24,13 @@ vec2 boxSegment(vec3 low, vec3 high, vec3 origin, vec3 direction)
     vec3 enter = min(a, b), leave = max(a, b);
     return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
 }
+
+// Moves the end of what begins at t to where a part of the ray begins or ends, if that comes before.
+void cut(vec2 ends, float t, inout float end)
+{
+    if (ends.x >= ends.y) return;
+    if (ends.x > t)
+        end = min(end, ends.x);
+    else if (ends.y > t)
+        end = min(end, ends.y);
+}

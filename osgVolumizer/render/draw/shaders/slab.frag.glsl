@@ -3,9 +3,6 @@
 // the segment. A brick takes the steps whose midpoints lie in its clip box: bricks add no ends, and however many
 // there are, all samples stay where they are.
 
-// What is left of the light when marching stops: the most that this may change any pixel.
-#define OPAQUE_ENOUGH 3e-5
-
 flat in vec2 slab; // nearest and farthest depth, from the reference depth
 #if defined(SLOTS) && !defined(COARSE)
 layout(location = 0, index = 0) out vec4 fragColor;
@@ -14,13 +11,6 @@ layout(location = 0, index = 1) out vec4 fragThrough; // what is left of the lig
 out vec4 fragColor;
 #endif
 
-uniform vec3 regionMin, regionMax; // of the whole volume
-uniform vec3 clipMin, clipMax;     // of the brick
-#if PLANES > 0
-uniform vec4 planes[PLANES];
-#endif
-uniform float stepsPerDepth;
-uniform float maximumSteps;
 #ifdef OPAQUE_DEPTH
 uniform sampler2D opaqueDepth;
 uniform int opaqueRule;   // 0: nothing to end at; 1: segments end there; 2: they begin there
@@ -80,58 +70,11 @@ float sortedDepth(int i)
 }
 #endif
 
-// Number of steps for a segment, such that their mean over all segments is the period.
-float stepsOf(float tNear, float tFar)
-{
-    return clamp(floor((tFar - tNear) * stepsPerDepth + 0.5), 1.0, maximumSteps);
-}
-
-#ifdef SHADING
-vec3 originEye, directionEye, towardsEye; // the ray in the eye frame
-
-// The colour that the scene's lights make of a classified one.
-vec4 lit(vec4 c, vec3 place, float t)
-{
-    if (!(c.a > 0.0)) return c;
-    return vec4(shade(c.rgb, place, originEye + t * directionEye, towardsEye), c.a);
-}
-#endif
-
-#ifdef COUNT_SAMPLES
-float sampleCount = 0.0;
-#define COUNT_SAMPLE sampleCount += 1.0;
-#else
-#define COUNT_SAMPLE
-#endif
-
-// What the ray function makes of the part of the segment in the brick (both in t). In its loops the place is advanced
-// by the last statement, and what ends them early is in the condition: either saves a third of the time on llvmpipe.
-// Steps that meet nothing are left out whole.
-// vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
-#pragma ray_function
-
-// Light of a segment. Colours jump where paint begins, so its parts end there.
-vec4 light(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
-{
-#ifdef PAINTED
-    vec4 sum = vec4(0.0);
-    for (float t = tNear; t < tFar && sum.a < 1.0 - OPAQUE_ENOUGH;) {
-        float next = nextCut(origin, direction, t, tFar);
-        sum += (1.0 - sum.a) * march(origin, direction, t, next, brick);
-        t = next;
-    }
-    return sum;
-#else
-    return march(origin, direction, tNear, tFar, brick);
-#endif
-}
-
 #ifdef SLOTS
 // The pixel's surfaces, near to far, and the volume between them.
-void compositeSurfaces(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+void compositeSurfaces(float enter, float leave)
 {
     ivec2 pixel = windowPixel();
-    float enter = max(tNear, brick.x), leave = min(tFar, brick.y);
     fragColor = vec4(0.0);
     float through = 1.0, t = enter;
     vec4 depths;
@@ -140,7 +83,7 @@ void compositeSurfaces(vec3 origin, vec3 direction, float tNear, float tFar, vec
         float depth = i < SLOTS ? depths[i & 3] : 2.0;
         float end = depth <= 1.0 ? min(rayAt(depth), leave) : leave;
         if (t < end) {
-            vec4 c = light(origin, direction, t, end, brick);
+            vec4 c = lightBetween(t, end);
             fragColor += through * c;
             through *= 1.0 - c.a;
             t = end;
@@ -161,25 +104,10 @@ void compositeSurfaces(vec3 origin, vec3 direction, float tNear, float tFar, vec
 
 void main()
 {
-    vec3 origin, direction;
-    pixelRay(origin, direction);
-    vec2 region = boxSegment(regionMin, regionMax, origin, direction);
-    vec2 brick = boxSegment(clipMin, clipMax, origin, direction);
-    float tNear = max(region.x, slab.x);
-    float tFar = min(region.y, slab.y);
-#if PLANES > 0
-    for (int i = 0; i < PLANES; ++i) clipToPlane(planes[i], origin, direction, tNear, tFar);
-#endif
+    float tNear = slab.x, tFar = slab.y;
 #ifdef OPAQUE_DEPTH
     if (opaqueRule == 1) tFar = min(tFar, opaqueOnRay());
     if (opaqueRule == 2) tNear = max(tNear, opaqueOnRay());
-#endif
-#ifdef SPLIT_DEPTH
-    float tSplit = depthOnRay(splitDepth);
-    if (!inFrontOfSplit && tSplit < 1e29)
-        tNear = max(tNear, tSplit);
-    else if (inFrontOfSplit)
-        tFar = tSplit < 1e29 ? min(tFar, tSplit) : tNear;
 #endif
 #ifdef RANKED
     float nearer = sortedDepth(rank), farther = sortedDepth(rank - 1);
@@ -189,17 +117,20 @@ void main()
     }
     if (nearer >= 0.0) tNear = max(tNear, rayAt(nearer));
 #endif
-#ifdef SHADING
-    vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
-    originEye = rayOriginEye * window;
-    directionEye = rayDirectionEye * window;
-    towardsEye = -normalize(directionEye);
+    vec2 shown = findParts(tNear, tFar);
+#ifdef SPLIT_DEPTH
+    float tSplit = depthOnRay(splitDepth);
+    if (!inFrontOfSplit && tSplit < 1e29)
+        tNear = max(tNear, tSplit);
+    else if (inFrontOfSplit)
+        tFar = tSplit < 1e29 ? min(tFar, tSplit) : tNear;
 #endif
+    float enter = max(tNear, shown.x), leave = min(tFar, shown.y);
 #ifdef SLOTS
-    compositeSurfaces(origin, direction, tNear, tFar, brick);
+    compositeSurfaces(enter, leave);
 #else
-    if (!(max(tNear, brick.x) < min(tFar, brick.y))) discard;
-    fragColor = light(origin, direction, tNear, tFar, brick);
+    if (!(enter < leave)) discard;
+    fragColor = lightBetween(tNear, tFar);
 #endif
 #ifdef COUNT_SAMPLES
     fragColor = vec4(sampleCount, 0.0, 0.0, 0.0);

@@ -6,7 +6,7 @@ uniform mat4 frameToClip;
 void main()
 {
     slab = slabIn;
-#ifdef SLOTS
+#if defined(SLOTS) || defined(FUSED)
     gl_Position = vec4(position, 1.0); // in device coordinates
 #else
     gl_Position = frameToClip * vec4(position, 1.0);

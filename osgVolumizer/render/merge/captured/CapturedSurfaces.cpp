@@ -26,7 +26,7 @@ bool canBeCaptured(const MergedGroup& group, const MergeRegion& region)
     if (region.surfaces.empty() || group.volumes().size() != 1) return false;
     if (isRefused(group.frame().contextId, Refusal::CAPTURED_SURFACES)) return false;
     const MergedVolume& volume = group.volumes().front();
-    if (volume.sliced || volume.instance->bricks.size() != 1) return false;
+    if (!volume.isOne()) return false;
     if (!volume.instance->above.isUsual()) return false;
     const Blending blending = blendingOf(group.surfaces()[region.surfaces.front()].graph());
     if (!blending.over) return false;
@@ -111,7 +111,7 @@ void CapturedSurfaces::addVolume(LeafList& leaves) const
     const Blending blending = blendingOf(_group.surfaces()[_region.surfaces.front()].graph());
     part.surfaceWeights = {blending.colorWeighted ? 1.0f : 0.0f,
                            blending.alphaWeighted ? 1.0f : 0.0f};
-    _group.addVolume(volume, screenMesh(*volume.instance),
+    _group.addVolume(volume, _group.screenMeshOf(volume),
                      std::make_shared<const VolumePart>(std::move(part)), _group.depth(), leaves);
 }
 

@@ -1,8 +1,45 @@
 // Light emitted and absorbed along the ray.
 
-#if defined(SLAB) && defined(PREINTEGRATED)
+#if defined(MEMBER) && defined(PREINTEGRATED)
+float knownDepth = -1e30; // where the entry and the integral of the last step's end are known
+float knownEntry;
+vec4 knownIntegral;
+
+// Adds to a step of length dt about t: extinction times colour, and extinction, per unit of depth.
+void addLight(float t, float dt, inout vec4 sum)
+{
+    float begin = t - 0.5 * dt, end = t + 0.5 * dt;
+    if (end <= shown.x || begin >= shown.y || t < segment.x || t >= segment.y) return;
+    vec3 place = placeOrigin + t * placeRate, halfStep = 0.5 * dt * placeRate;
+    if (abs(begin - knownDepth) > 1e-3 * dt) {
+        knownEntry = tableEntry(place - halfStep);
+        knownIntegral = tableIntegral(knownEntry);
+    }
+    float entry = tableEntryAfter(knownEntry, place + halfStep);
+    vec4 integral = tableIntegral(entry);
+    vec4 c = classifyRun(knownEntry, knownIntegral, entry, integral);
+    knownDepth = end;
+    knownEntry = entry;
+    knownIntegral = integral;
+    addClassified(c, place, t, sum);
+}
+float surfaceOnRay() { return 1e30; }
+void addSurface(float t, inout vec3 color, inout float through) {}
+
+#elif defined(MEMBER)
+// Adds to a step about t: extinction times colour, and extinction, per unit of depth.
+void addLight(float t, float dt, inout vec4 sum)
+{
+    if (t < shown.x || t >= shown.y) return;
+    vec3 place = placeOrigin + t * placeRate;
+    vec4 c = classify(place);
+    addClassified(c, place, t, sum);
+}
+float surfaceOnRay() { return 1e30; }
+void addSurface(float t, inout vec3 color, inout float through) {}
+
+#elif defined(SLAB) && defined(PREINTEGRATED)
 uniform bool homogeneous;           // all of the brick has one value
-uniform vec3 brickMin, brickMax; // what the brick's texture has values for
 
 // Adds the piece of the ray from the last place to this one, where the depth is t.
 void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float unitsPerDepth,

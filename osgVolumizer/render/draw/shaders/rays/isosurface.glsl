@@ -23,18 +23,18 @@ float rootBetween(vec3 start, vec3 rate, float t0, float f0, float t1, float f1)
     return t1;
 }
 
-// The first crossing of the iso-value, opaque.
-vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+// Where the ray first crosses the iso-value in a part of [tNear, tFar]; far away where it does not.
+float crossing(vec3 origin, vec3 direction, float tNear, float tFar, vec2 part)
 {
-    tNear = max(tNear, brick.x);
-    tFar = min(tFar, brick.y);
+    tNear = max(tNear, part.x);
+    tFar = min(tFar, part.y);
     float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
     vec3 start = placeOf(origin + direction * tNear), rate = VOXEL_LENGTH * direction * dt;
     float i = 0.0, last = count;
 #ifdef SKIPPING
-    vec2 shown = occupiedPart(origin, direction, tNear, tFar);
-    i = max(i, floor((shown.x - tNear) / dt));
-    last = min(last, ceil((shown.y - tNear) / dt));
+    vec2 occupied = occupiedPart(origin, direction, tNear, tFar);
+    i = max(i, floor((occupied.x - tNear) / dt));
+    last = min(last, ceil((occupied.y - tNear) / dt));
 #endif
     vec3 place = start + i * rate;
     float before = overIso(place), after = before;
@@ -45,14 +45,43 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
         COUNT_SAMPLE
         place += rate;
     }
-    if ((before < 0.0) == (after < 0.0)) return vec4(0.0);
-    float at = rootBetween(start, rate, i - 1.0, before, i, after);
+    if ((before < 0.0) == (after < 0.0)) return 1e30;
+    return tNear + rootBetween(start, rate, i - 1.0, before, i, after) * dt;
+}
+
+vec3 colorAt(vec3 origin, vec3 direction, float t)
+{
     vec4 color = vec4(classifyTexel(isoTexel).rgb, 1.0);
 #ifdef SHADING
-    color = lit(color, start + at * rate, tNear + at * dt);
+    color = lit(color, placeOf(origin + t * direction), t);
 #endif
 #ifdef PAINTED
-    color.rgb = painted(color.rgb, origin + (tNear + at * dt) * direction);
+    color.rgb = painted(color.rgb, origin + t * direction);
 #endif
-    return color;
+    return color.rgb;
 }
+
+#ifdef MEMBER
+float surfaceDepth;
+
+void addLight(float t, float dt, inout vec4 sum) {}
+float surfaceOnRay()
+{
+    surfaceDepth = 1e30;
+    if (shown.x < shown.y) surfaceDepth = crossing(memberOrigin, memberDirection, shown.x, shown.y, shown);
+    return surfaceDepth;
+}
+void addSurface(float t, inout vec3 color, inout float through)
+{
+    if (t != surfaceDepth) return;
+    color += through * colorAt(memberOrigin, memberDirection, t);
+    through = 0.0;
+}
+#else
+// The first crossing of the iso-value, opaque.
+vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
+{
+    float t = crossing(origin, direction, tNear, tFar, brick);
+    return t < 1e29 ? vec4(colorAt(origin, direction, t), 1.0) : vec4(0.0);
+}
+#endif

@@ -1,0 +1,155 @@
+#include "FusedDrawing.h"
+
+#include "../context/ProgramInterface.h"
+#include "../context/Uniforms.h"
+#include "BatchDrawing.h"
+#include "FusedSource.h"
+#include "PixelRays.h"
+#include "VolumeProgram.h"
+#include "VolumeUniforms.h"
+
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+namespace osgVolumizer {
+namespace render {
+
+namespace {
+
+constexpr unsigned FIRST_MEMBER_UNIT = UNIT_CELLS; // before are those of the march
+
+// Hands out texture units; the same one for the same table.
+class Units
+{
+public:
+    explicit Units(int count) : _end(static_cast<unsigned>(std::max(count, 0))) {}
+    unsigned take(unsigned count = 1)
+    {
+        _next += count;
+        return _next - count;
+    }
+    unsigned ofTable(const osg::TextureBuffer* table)
+    {
+        const auto known = _tables.find(table);
+        if (known != _tables.end()) return known->second;
+        return _tables[table] = take();
+    }
+    unsigned taken() const { return _next; }
+    bool suffice() const { return _next <= _end; }
+
+private:
+    unsigned _next = FIRST_MEMBER_UNIT, _end;
+    std::map<const osg::TextureBuffer*, unsigned> _tables;
+};
+
+Result<PixelRays> raysOf(const FusedDrawing& drawing, const FusedMember& member)
+{
+    const FusedVolumes& volumes = *drawing.part.fused;
+    const glm::dvec3 center(glm::inverse(member.frameToEye) * glm::dvec4(volumes.centerEye, 1.0));
+    return pixelRays(member.frameToEye, drawing.projection, drawing.viewport,
+                     volumes.referenceDepth, center);
+}
+
+bool isHomogeneous(const FusedMember& member)
+{
+    const ProgramFeatures& features = member.part->features;
+    return member.batch.cells && member.batch.cells->homogeneous && !features.shading &&
+           features.paintCount == 0;
+}
+
+// Values and table of a member, for a program whose names of them have a suffix or none.
+bool setMember(const FusedDrawing& drawing, const FusedMember& member, const Uniforms& uniforms,
+               unsigned tableUnit, unsigned paintUnit)
+{
+    osg::State& state = *drawing.renderInfo.getState();
+    const Result<PixelRays> rays = raysOf(drawing, member);
+    if (!rays) return false;
+    const VolumePart& part = *member.part;
+    setUniforms(state, uniforms, part, *rays, member.frameToEye,
+                drawing.resources.part<AccumulationBuffers>());
+    if (part.look->table.texture && !applyTable(state, part.look->table.texture.get(), tableUnit))
+        return false;
+    if (part.paints)
+        setPaints(drawing.renderInfo, drawing.resources.limits, uniforms, *part.paints, paintUnit);
+    return true;
+}
+
+BatchDrawing batchDrawing(const FusedDrawing& drawing, const FusedMember& member,
+                          const Uniforms& uniforms, const core::View& view)
+{
+    return {drawing.renderInfo, drawing.resources.limits, uniforms, member.part->features, view};
+}
+
+bool setMarched(const FusedDrawing& drawing, const FusedMember& member, const Uniforms& uniforms,
+                Units& units)
+{
+    const ProgramFeatures& features = member.part->features;
+    const core::View view{member.frameToEye, drawing.projection};
+    const unsigned table = units.ofTable(member.part->look->table.texture.get());
+    BatchDrawing batch = batchDrawing(drawing, member, uniforms, view);
+    batch.voxelUnit = units.take();
+    batch.cellUnit = features.skipping ? units.take() : 0;
+    const unsigned paints = units.take(2 * static_cast<unsigned>(features.paintCount));
+    if (!units.suffice() || !setMember(drawing, member, uniforms, table, paints)) return false;
+    uniforms.set("voxels", static_cast<int>(batch.voxelUnit));
+    uniforms.set("lookupTable", static_cast<int>(table));
+    if (features.skipping) uniforms.set("cells", static_cast<int>(batch.cellUnit));
+    if (!drawing.part.features.inOrder && isHomogeneous(member))
+        uniforms.set("stepsPerDepth", 0.0f);
+    return setBatch(batch, member.batch);
+}
+
+} // namespace
+
+bool setMembers(const FusedDrawing& drawing, const osg::Program::PerContextProgram& program)
+{
+    osg::GLExtensions& gl = *drawing.renderInfo.getState()->get<osg::GLExtensions>();
+    const std::vector<FusedMember>& members = drawing.part.fused->members;
+    Units units(drawing.resources.limits.textureUnits);
+    int mostSteps = 0;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        const Uniforms uniforms(gl, program, memberSuffix(i));
+        if (!setMarched(drawing, members[i], uniforms, units)) return false;
+        mostSteps += members[i].part->look->maximumSteps;
+    }
+    for (unsigned unit = FIRST_MEMBER_UNIT; unit < units.taken(); ++unit)
+        drawing.renderInfo.getState()->haveAppliedTextureAttribute(unit,
+                                                                   osg::StateAttribute::TEXTURE);
+    Uniforms(gl, program).set("mostSteps", static_cast<float>(mostSteps));
+    return true;
+}
+
+void drawMembersApart(const FusedDrawing& drawing, const BrickBatch& triangles)
+{
+    osg::State& state = *drawing.renderInfo.getState();
+    for (const FusedMember& member : drawing.part.fused->members) {
+        const auto set = volumeStateSet(member.part->features);
+        state.applyAttribute(set->getAttribute(osg::StateAttribute::PROGRAM));
+        state.applyAttribute(set->getAttribute(osg::StateAttribute::BLENDFUNC));
+        const auto* program = state.getLastAppliedProgramObject();
+        if (!program) continue;
+        const Uniforms uniforms(*state.get<osg::GLExtensions>(), *program);
+        const glm::dmat4 inDevice(1.0);
+        uniforms.set("frameToClip", inDevice);
+        const std::pair<const char*, unsigned> samplers[] = {{"voxels", UNIT_VOXELS},
+                                                             {"lookupTable", UNIT_TABLE},
+                                                             {"opaqueDepth", UNIT_OPAQUE_DEPTH},
+                                                             {"cells", UNIT_CELLS}};
+        for (const auto& sampler : samplers)
+            uniforms.set(sampler.first, static_cast<int>(sampler.second));
+        if (!setMember(drawing, member, uniforms, UNIT_TABLE, UNIT_FIRST_PAINT)) continue;
+        const core::View view{member.frameToEye, drawing.projection};
+        BrickBatch batch = member.batch;
+        batch.firstIndex = triangles.firstIndex;
+        batch.indexCount = triangles.indexCount;
+        drawBatch(batchDrawing(drawing, member, uniforms, view), batch);
+    }
+    state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
+    state.haveAppliedAttribute(osg::StateAttribute::BLENDFUNC);
+}
+
+} // namespace render
+} // namespace osgVolumizer
