@@ -10,6 +10,9 @@
 #include <osg/GLExtensions>
 #include <osg/MatrixTransform>
 #include <osg/Texture2D>
+#include <osg/observer_ptr>
+#include <osgUtil/RenderStage>
+#include <osgViewer/Renderer>
 #include <osgViewer/Viewer>
 
 #include <mutex>
@@ -215,7 +218,38 @@ void expectEachCamera(const FloatImage& image, float tolerance)
             << place.what;
 }
 
+/// Looks at the leaf that is drawn last before the viewer's camera, and whether it is there then.
+class WatchLastLeaf : public osg::Camera::DrawCallback
+{
+public:
+    explicit WatchLastLeaf(const osg::Camera& viewers) : _viewers(viewers) {}
+    /// Called when a camera of the scene is drawn, and before the viewer's.
+    void operator()(osg::RenderInfo& info) const override
+    {
+        if (info.getCurrentCamera() == &_viewers) {
+            existed = leaf.valid();
+            return;
+        }
+        auto& renderer = dynamic_cast<const osgViewer::Renderer&>(*_viewers.getRenderer());
+        auto* stage = const_cast<osgViewer::Renderer&>(renderer).getSceneView(0)->getRenderStage();
+        for (const auto& before : stage->getPreRenderList())
+            for (const auto& bin : before.second->getRenderBinList())
+                if (!bin.second->getRenderLeafList().empty())
+                    leaf = bin.second->getRenderLeafList().back();
+        found = leaf.valid();
+    }
+    mutable osg::observer_ptr<osgUtil::RenderLeaf> leaf;
+    mutable bool found = false, existed = false;
+
+private:
+    const osg::Camera& _viewers;
+};
+
 class SceneCameras : public support::GLTest, public ::testing::WithParamInterface<int>
+{
+};
+
+class SceneCamerasAlone : public support::GLTest
 {
 };
 
@@ -239,6 +273,24 @@ TEST_P(SceneCameras, AreInThePictureWithoutErrors)
             EXPECT_EQ(listener->errors(), "");
             expectEachCamera(image, 0.02f);
         }
+}
+
+// OSG hands the last leaf of a stage on to the next one, when the stage has no leaves any more.
+TEST_F(SceneCamerasAlone, LastLeafIsThereForTheNextCamera)
+{
+    const osg::ref_ptr<osg::Camera> portrait =
+        makePortrait(osg::Camera::PRE_RENDER, makeColors(), osg::Camera::FRAME_BUFFER_OBJECT,
+                     osg::Vec4(0, 0, 1, 1));
+    osg::ref_ptr<WatchLastLeaf> watch;
+    RenderOptions options = viewOf(PictureTarget::FLOAT32);
+    options.prepare = [&](osgViewer::Viewer& viewer) {
+        watch = new WatchLastLeaf(*viewer.getCamera());
+        portrait->setFinalDrawCallback(watch);
+        viewer.getCamera()->setPreDrawCallback(watch);
+    };
+    EXPECT_FALSE(support::renderScene(portrait, options).empty());
+    ASSERT_TRUE(watch && watch->found);
+    EXPECT_TRUE(watch->existed);
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, SceneCameras,
