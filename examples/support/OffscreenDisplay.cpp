@@ -49,9 +49,20 @@ std::vector<EGLDeviceEXT> allDevices()
     return devices;
 }
 
+const std::string NO_CONTEXT = "No GL context: ";
+
 Status noDisplay(const std::string& why)
 {
-    return {ErrorCode::NOT_SUPPORTED, "No GL context: " + why + "."};
+    return {ErrorCode::NOT_SUPPORTED, NO_CONTEXT + why + "."};
+}
+
+// What noDisplay() was told, or another sentence without its full stop.
+std::string reasonOf(const Status& status)
+{
+    const std::string& text = status.text;
+    const std::size_t begin =
+        text.compare(0, NO_CONTEXT.size(), NO_CONTEXT) ? 0 : NO_CONTEXT.size();
+    return text.substr(begin, text.size() - begin - 1);
 }
 
 Status noDevice(const std::string& name)
@@ -139,13 +150,13 @@ Result<const OffscreenDisplay*> OffscreenDisplay::open(int device)
 
 Result<const OffscreenDisplay*> OffscreenDisplay::openFirst(const std::vector<int>& devices)
 {
-    Status all(ErrorCode::NOT_SUPPORTED, "");
+    std::string reasons;
     for (const int device : devices) {
         const Result<const OffscreenDisplay*> display = open(device);
         if (display.ok()) return display;
-        all.text += (all.text.empty() ? "" : " ") + display.status.text;
+        reasons += (reasons.empty() ? "" : "; ") + reasonOf(display.status);
     }
-    return all;
+    return noDisplay(reasons);
 }
 
 Result<const OffscreenDisplay*> OffscreenDisplay::openDefault()

@@ -62,6 +62,50 @@ std::string readText(const std::string& name)
 // The view of a square from the front, two units high.
 const std::string frontal = " --size 16 8 --eye 0 -5 0 --center 0 0 0 --ortho 2 ";
 
+// A square that faces the front, its lower left corner at (x, z).
+osg::ref_ptr<osg::Geometry> squareAt(float x, float z, float size, const osg::Vec4& color)
+{
+    return makeQuad(
+        {osg::Vec3(x, 0, z), {x + size, 0, z}, {x + size, 0, z + size}, {x, 0, z + size}}, color);
+}
+
+osg::ref_ptr<osg::Camera> cameraOf(osg::Camera::RenderOrder order, osg::Node* child)
+{
+    osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+    camera->setRenderOrder(order);
+    camera->setClearMask(GL_DEPTH_BUFFER_BIT);
+    camera->addChild(child);
+    return camera;
+}
+
+// Left a texture that is drawn to first: blue, and red in a quarter. Right a head-up display,
+// green, above what a nested camera shows, yellow.
+osg::ref_ptr<osg::Group> sceneWithCameras()
+{
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
+    texture->setTextureSize(16, 16);
+    texture->setInternalFormat(GL_RGBA);
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+    const osg::ref_ptr<osg::Camera> drawn =
+        cameraOf(osg::Camera::PRE_RENDER, squareAt(-2, -2, 2, osg::Vec4(1, 0, 0, 1)));
+    drawn->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    drawn->setClearColor(osg::Vec4(0, 0, 1, 1));
+    drawn->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
+    drawn->setViewport(0, 0, 16, 16);
+    drawn->attach(osg::Camera::COLOR_BUFFER, texture);
+    const osg::ref_ptr<osg::Geometry> screen =
+        osg::createTexturedQuadGeometry({-2, 0, -1}, {2, 0, 0}, {0, 0, 2});
+    screen->getOrCreateStateSet()->setTextureAttributeAndModes(0, texture);
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    scene->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    scene->addChild(drawn);
+    scene->addChild(screen);
+    scene->addChild(cameraOf(osg::Camera::POST_RENDER, squareAt(1, 0, 1, osg::Vec4(0, 1, 0, 1))));
+    scene->addChild(
+        cameraOf(osg::Camera::NESTED_RENDER, squareAt(1, -1, 1, osg::Vec4(1, 1, 0, 1))));
+    return scene;
+}
+
 } // namespace
 
 TEST_F(RenderToolGLTest, WritesFloatsAsTheyAre)
@@ -148,41 +192,9 @@ TEST_F(RenderToolGLTest, SaysWhichDeviceDrew)
     EXPECT_GT(count, 0);
 }
 
-// A head-up display over all, and a texture that is drawn to first, as scene files have them.
 TEST_F(RenderToolGLTest, ScenesHaveCamerasOfTheirOwn)
 {
-    const auto square = [](float x, float z, float size, const osg::Vec4& color) {
-        return makeQuad(
-            {osg::Vec3(x, 0, z), {x + size, 0, z}, {x + size, 0, z + size}, {x, 0, z + size}},
-            color);
-    };
-    const auto camera = [](osg::Camera::RenderOrder order, osg::Node* child) {
-        osg::ref_ptr<osg::Camera> made = new osg::Camera;
-        made->setRenderOrder(order);
-        made->setClearMask(order == osg::Camera::PRE_RENDER
-                               ? GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT
-                               : GL_DEPTH_BUFFER_BIT);
-        made->setClearColor(osg::Vec4(0, 0, 1, 1));
-        made->addChild(child);
-        return made;
-    };
-    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
-    texture->setTextureSize(16, 16);
-    texture->setInternalFormat(GL_RGBA);
-    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
-    const auto drawn = camera(osg::Camera::PRE_RENDER, square(-2, -2, 2, osg::Vec4(1, 0, 0, 1)));
-    drawn->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
-    drawn->setViewport(0, 0, 16, 16);
-    drawn->attach(osg::Camera::COLOR_BUFFER, texture);
-    const osg::ref_ptr<osg::Geometry> screen =
-        osg::createTexturedQuadGeometry({-2, 0, -1}, {2, 0, 0}, {0, 0, 2});
-    screen->getOrCreateStateSet()->setTextureAttributeAndModes(0, texture);
-    osg::ref_ptr<osg::Group> scene = new osg::Group;
-    scene->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
-    scene->addChild(drawn);
-    scene->addChild(screen);
-    scene->addChild(camera(osg::Camera::POST_RENDER, square(1, 0, 1, osg::Vec4(0, 1, 0, 1))));
-    scene->addChild(camera(osg::Camera::NESTED_RENDER, square(1, -1, 1, osg::Vec4(1, 1, 0, 1))));
+    const osg::ref_ptr<osg::Group> scene = sceneWithCameras();
     for (const char* type : {"osgt", "osgb", "osgx"}) {
         const std::string name = file(std::string("cameras.") + type);
         ASSERT_TRUE(osgDB::writeNodeFile(*scene, name));

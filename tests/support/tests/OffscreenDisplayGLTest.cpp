@@ -135,6 +135,7 @@ TEST_F(OffscreenDisplayGLTest, WithoutAChoiceTheFirstThatOpens)
     EXPECT_EQ((*other)->device(), drawing.back());
     const auto neither = OffscreenDisplay::openFirst({missing, missing + 1});
     EXPECT_FALSE(neither.ok());
+    EXPECT_EQ(std::count(neither.status.text.begin(), neither.status.text.end(), '.'), 1);
     for (const int device : {missing, missing + 1})
         EXPECT_NE(neither.status.text.find("'" + std::to_string(device) + "'"), std::string::npos)
             << neither.status.text;
