@@ -106,6 +106,11 @@ const std::map<std::string, Handler>& handlers()
         {"--background", [](Arguments& a, Words& w) { a.background = w.color(); }},
         {"--output", [](Arguments& a, Words& w) { a.output = w.text(); }},
         {"--stats", [](Arguments& a, Words& w) { a.stats = w.text(); }},
+        {"--device",
+         [](Arguments& a, Words& w) {
+             a.device = w.text();
+             a.listDevices = a.device == "list";
+         }},
         {"--frames", [](Arguments& a, Words& w) { a.frames = w.integer(1, 1000000); }},
         {"--turn", [](Arguments& a, Words& w) { a.turnDegrees = w.number(-360.0, 360.0); }},
         {"-O", [](Arguments& a, Words& w) { a.readerOptions = w.text(); }},
@@ -117,7 +122,7 @@ const std::map<std::string, Handler>& handlers()
 
 Status checkWhole(const Arguments& a)
 {
-    if (a.help || a.version) return Status();
+    if (a.help || a.version || a.listDevices) return Status();
     if (a.scene.empty()) return invalid("No scene is named; see --help.");
     if (a.output.empty() && a.stats.empty())
         return invalid("Nothing is asked for: give --output, --stats, or both.");
@@ -186,7 +191,8 @@ Renders a scene without a window and writes the picture, the statistics, or both
   --output FILE         .exr (or .tif): 32-bit float RGBA, linear, premultiplied, rays through pixel
                         centres; .png: 8 bit, for people, with straight alpha. Over an opaque
                         background both have what osgviewer shows, else true coverage
-  --stats FILE          JSON: milliseconds per frame (glFinish inside) and the volumes' counters
+  --stats FILE          JSON: milliseconds per frame (glFinish inside), the volumes' counters, and
+                        which device drew
   --frames N            frames to time, after one that is not (1)
   --turn DEGREES        the viewer goes round the scene by so much from frame to frame, and is back
                         for the picture (0)
@@ -197,6 +203,9 @@ Renders a scene without a window and writes the picture, the statistics, or both
   --fovy DEGREES        vertical field of view (osgviewer's, 29.1)
   --ortho HALF_HEIGHT   parallel projection, half the picture's height in world units
   --background R G B A  premultiplied (0 0 0 0)
+  --device N            EGL device that draws, by its number (OSGVOLUMIZER_EGL_DEVICE's; without it
+                        Mesa's surfaceless platform, else the first device that opens)
+  --device list         tells which there are
   -O STRING             options for the reader of SCENE, e.g. "spacing=1,1,1.5 table=bone.lut"
   --version             the library's version
 
@@ -212,6 +221,6 @@ What every volume of the scene gets instead of what it has:
             addRow(text, option.name + "=" + option.values, option.help);
     return text + R"(
 Lights and optimizer as in osgviewer. Exit code 0; 1 where the scene, or a part of it, cannot be
-read, rendered or written; 2 for a wrong command line.
+read, rendered or written, or the device is none; 2 for a wrong command line.
 )";
 }

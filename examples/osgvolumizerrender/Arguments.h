@@ -26,6 +26,8 @@ struct Arguments
         properties;
     std::string output;
     std::string stats;
+    std::optional<std::string> device; ///< the number of EGL's, as it was typed
+    bool listDevices = false;
     int frames = 1;
     double turnDegrees = 0.0; ///< from frame to frame
     bool help = false;

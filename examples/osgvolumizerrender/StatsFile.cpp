@@ -45,6 +45,14 @@ std::string object(const std::map<std::string, double>& counters)
     return "{" + out.str() + (counters.empty() ? "}" : "\n  }");
 }
 
+std::string object(const osgVolumizer::support::DrawingDevice& device)
+{
+    const bool numbered = device.number != osgVolumizer::support::OffscreenDisplay::SURFACELESS;
+    return "{\n    \"renderer\": " + quoted(device.renderer) +
+           ",\n    \"platform\": " + quoted(device.platform) +
+           ",\n    \"number\": " + (numbered ? std::to_string(device.number) : "null") + "\n  }";
+}
+
 } // namespace
 
 osgVolumizer::Status writeStatistics(const Statistics& statistics, const Arguments& arguments)
@@ -52,6 +60,7 @@ osgVolumizer::Status writeStatistics(const Statistics& statistics, const Argumen
     std::ofstream out(arguments.stats);
     out << "{\n  \"scene\": " << quoted(arguments.scene) << ",\n  \"width\": " << arguments.width
         << ",\n  \"height\": " << arguments.height
+        << ",\n  \"device\": " << object(statistics.device)
         << ",\n  \"frames\": " << statistics.milliseconds.size()
         << ",\n  \"milliseconds\": " << median(statistics.milliseconds)
         << ",\n  \"millisecondsPerFrame\": [";

@@ -78,8 +78,32 @@ void turn(support::SceneRenderer& renderer, const Arguments& arguments,
     renderer.render(); // at rest, a view is exact from its second frame on
 }
 
+/// A line for each device of EGL.
+Status listDevices()
+{
+    const int count = support::OffscreenDisplay::deviceCount();
+    if (count == 0) return Status(ErrorCode::NOT_SUPPORTED, "EGL lists no devices.");
+    for (int i = 0; i < count; ++i) {
+        const osg::ref_ptr<support::SurfacelessGraphicsContext> context =
+            new support::SurfacelessGraphicsContext(1, 1, support::OffscreenContext::COMPATIBILITY,
+                                                    i);
+        context->realize();
+        std::cout << i << "  "
+                  << (context->valid() ? context->device().renderer : context->status().text)
+                  << "\n";
+    }
+    return Status();
+}
+
 Status run(const Arguments& arguments)
 {
+    if (arguments.listDevices) return listDevices();
+    std::optional<int> device;
+    if (arguments.device) {
+        const Result<int> number = support::OffscreenDisplay::parseDevice(*arguments.device);
+        if (!number.ok()) return number.status;
+        device = *number;
+    }
     const Result<osg::ref_ptr<osg::Node>> read =
         support::readScene(arguments.scene, arguments.readerOptions);
     if (!read.ok()) return read.status;
@@ -88,7 +112,8 @@ Status run(const Arguments& arguments)
     scene->accept(apply);
     osgUtil::Optimizer().optimize(scene.get());
 
-    const support::RenderOptions options = viewOf(arguments, scene->getBound());
+    support::RenderOptions options = viewOf(arguments, scene->getBound());
+    options.device = device;
     // Singular where the line of sight is along the up vector.
     if (!(std::abs(options.view(0, 0)) + std::abs(options.view(1, 0)) +
               std::abs(options.view(2, 0)) >
@@ -108,6 +133,7 @@ Status run(const Arguments& arguments)
         statistics.latestFrame = renderer.counters();
     }
     if (!renderer.status().ok()) return renderer.status();
+    statistics.device = renderer.device();
     support::FloatImage image;
     if (!arguments.output.empty()) image = support::renderCoverage(renderer);
     if (!renderer.status().ok()) return renderer.status();

@@ -1,8 +1,11 @@
 #pragma once
 
+#include "OffscreenDisplay.h"
+
 #include <osgVolumizer/core/Status.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace osgVolumizer {
@@ -19,9 +22,8 @@ struct SurfaceFormat
     }
 };
 
-/// An OpenGL context without window or X server (EGL, Mesa's surfaceless platform), and without a
-/// default framebuffer unless one is asked for. One display serves the process; contexts are
-/// independent of each other unless they share.
+/// An OpenGL context without window or X server (of an OffscreenDisplay), and without a default
+/// framebuffer unless one is asked for. Contexts are independent of each other unless they share.
 class OffscreenContext
 {
 public:
@@ -31,9 +33,11 @@ public:
         CORE
     };
 
-    /// Not yet current. NOT_SUPPORTED where EGL, the platform or the profile is missing.
+    /// Not yet current, on OffscreenDisplay's default, or the device of a number; one that shares
+    /// is where the other is. NOT_SUPPORTED where EGL, a display or the profile is missing.
     static Result<std::unique_ptr<OffscreenContext>>
-    create(Profile profile = COMPATIBILITY, const OffscreenContext* shared = nullptr);
+    create(Profile profile = COMPATIBILITY, const OffscreenContext* shared = nullptr,
+           std::optional<int> device = {});
 
     /// One with a default framebuffer of a format, in the compatibility profile; single buffered.
     static Result<std::unique_ptr<OffscreenContext>> createWithSurface(int width, int height,
@@ -50,16 +54,17 @@ public:
     bool makeCurrent();
     bool release();
     bool isCurrent() const;
+    const OffscreenDisplay& display() const { return *_display; }
 
 private:
-    OffscreenContext(void* display, void* context, void* surface = nullptr)
-        : _display(display), _context(context), _surface(surface)
+    OffscreenContext(const OffscreenDisplay& display, void* context, void* surface = nullptr)
+        : _display(&display), _context(context), _surface(surface)
     {
     }
 
-    void* _display; // EGLDisplay; this header drags in no EGL
-    void* _context; // EGLContext
-    void* _surface; // EGLSurface, or null
+    const OffscreenDisplay* _display; // of all the process
+    void* _context;                   // EGLContext; this header drags in no EGL
+    void* _surface;                   // EGLSurface, or null
 };
 
 } // namespace support

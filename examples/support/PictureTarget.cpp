@@ -1,5 +1,6 @@
 #include "PictureTarget.h"
 
+#include <osg/FrameBufferObject>
 #include <osg/GL>
 #include <osg/RenderInfo>
 #include <osg/State>
@@ -45,18 +46,40 @@ private:
 PictureTarget::PictureTarget(osg::Camera& camera, int width, int height, Format format)
     : _width(width), _height(height)
 {
-    const bool floats = format == FLOAT32;
-    _color = makeTexture(width, height, floats ? GL_RGBA32F_ARB : GL_RGBA8, GL_RGBA,
-                         floats ? GL_FLOAT : GL_UNSIGNED_BYTE);
-    _depth = makeTexture(width, height, floats ? GL_DEPTH_COMPONENT32F : GL_DEPTH24_STENCIL8_EXT,
-                         floats ? GL_DEPTH_COMPONENT : GL_DEPTH_STENCIL_EXT,
-                         floats ? GL_FLOAT : GL_UNSIGNED_INT_24_8_EXT);
+    makeTextures(format);
     camera.setViewport(0, 0, width, height);
     camera.setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
     camera.attach(osg::Camera::COLOR_BUFFER0, _color.get());
-    camera.attach(floats ? osg::Camera::DEPTH_BUFFER : osg::Camera::PACKED_DEPTH_STENCIL_BUFFER,
-                  _depth.get());
+    camera.attach(_depthBuffer, _depth.get());
     camera.setFinalDrawCallback(new ReadBack(this));
+}
+
+PictureTarget::PictureTarget(osg::Camera& camera, SurfacelessGraphicsContext& context, int width,
+                             int height, Format format)
+    : _width(width), _height(height)
+{
+    makeTextures(format);
+    const osg::ref_ptr<osg::FrameBufferObject> window = new osg::FrameBufferObject;
+    window->setAttachment(osg::Camera::COLOR_BUFFER0, osg::FrameBufferAttachment(_color.get()));
+    window->setAttachment(_depthBuffer, osg::FrameBufferAttachment(_depth.get()));
+    context.setWindow(window);
+    camera.setViewport(0, 0, width, height);
+    camera.setRenderTargetImplementation(osg::Camera::FRAME_BUFFER);
+    // Said in every frame, as a window's is: cameras of the scene may have another one.
+    camera.setDrawBuffer(GL_COLOR_ATTACHMENT0_EXT);
+    camera.setReadBuffer(GL_COLOR_ATTACHMENT0_EXT);
+    camera.setFinalDrawCallback(new ReadBack(this));
+}
+
+void PictureTarget::makeTextures(Format format)
+{
+    const bool floats = format == FLOAT32;
+    _color = makeTexture(_width, _height, floats ? GL_RGBA32F_ARB : GL_RGBA8, GL_RGBA,
+                         floats ? GL_FLOAT : GL_UNSIGNED_BYTE);
+    _depth = makeTexture(_width, _height, floats ? GL_DEPTH_COMPONENT32F : GL_DEPTH24_STENCIL8_EXT,
+                         floats ? GL_DEPTH_COMPONENT : GL_DEPTH_STENCIL_EXT,
+                         floats ? GL_FLOAT : GL_UNSIGNED_INT_24_8_EXT);
+    _depthBuffer = floats ? osg::Camera::DEPTH_BUFFER : osg::Camera::PACKED_DEPTH_STENCIL_BUFFER;
 }
 
 void PictureTarget::request(unsigned n, bool withDepth)

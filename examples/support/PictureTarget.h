@@ -1,6 +1,7 @@
 #pragma once
 
 #include "FloatImage.h"
+#include "SurfacelessGraphicsContext.h"
 
 #include <osg/Camera>
 #include <osg/Texture2D>
@@ -11,8 +12,8 @@
 namespace osgVolumizer {
 namespace support {
 
-/// Makes a camera render to textures of a framebuffer object, and reads the picture of one chosen
-/// frame back, in whichever thread draws. It takes the camera's final draw callback.
+/// Makes a camera render to textures, and reads the picture of one chosen frame back, in whichever
+/// thread draws. It takes the camera's final draw callback.
 class PictureTarget : public osg::Referenced
 {
 public:
@@ -23,8 +24,13 @@ public:
     };
 
     /// Sets viewport, render target and callback of `camera`; depth has 32 bit float values, or 24
-    /// bit with stencil for BYTE.
+    /// bit with stencil for BYTE. The textures are a framebuffer object of the camera's own: what
+    /// cameras of its scene draw to the window is not in the picture.
     PictureTarget(osg::Camera& camera, int width, int height, Format format = FLOAT32);
+    /// The textures are what the context has as its window, for `camera` and those of its scene.
+    /// Expects that the context is not realized yet, and has no other window.
+    PictureTarget(osg::Camera& camera, SurfacelessGraphicsContext& context, int width, int height,
+                  Format format = FLOAT32);
 
     /// Asks for the picture of the n-th frame drawn from now on, n >= 1.
     void request(unsigned n, bool withDepth = false);
@@ -41,10 +47,12 @@ protected:
 private:
     class ReadBack;
 
+    void makeTextures(Format format);
     void frameDrawn(osg::State& state);
 
     osg::ref_ptr<osg::Texture2D> _color;
     osg::ref_ptr<osg::Texture2D> _depth;
+    osg::Camera::BufferComponent _depthBuffer = osg::Camera::DEPTH_BUFFER;
     int _width;
     int _height;
 

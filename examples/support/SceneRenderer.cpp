@@ -71,16 +71,16 @@ RenderOptions& RenderOptions::frameScene(const osg::BoundingSphere& bound)
 }
 
 SceneRenderer::SceneRenderer(osg::Node* scene, const RenderOptions& options)
-    : _options(options), _viewer(new osgViewer::Viewer)
+    : _options(options), _context(new SurfacelessGraphicsContext(options.width, options.height,
+                                                                 options.profile, options.device)),
+      _viewer(new osgViewer::Viewer)
 {
-    osg::ref_ptr<SurfacelessGraphicsContext> context =
-        new SurfacelessGraphicsContext(options.width, options.height, options.profile);
-    _status = context->status();
+    _status = _context->status();
 
     osg::Camera* camera = _viewer->getCamera();
-    camera->setGraphicsContext(context.get());
+    camera->setGraphicsContext(_context.get());
     camera->setProjectionResizePolicy(osg::Camera::FIXED);
-    _target = new PictureTarget(*camera, options.width, options.height, options.format);
+    _target = new PictureTarget(*camera, *_context, options.width, options.height, options.format);
     camera->getStats()->collectStats("osgVolumizer", true);
     _viewer->getViewerStats()->collectStats("osgVolumizer", true);
 

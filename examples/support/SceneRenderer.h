@@ -29,8 +29,9 @@ struct RenderOptions
     osgViewer::ViewerBase::ThreadingModel threading = osgViewer::ViewerBase::SingleThreaded;
     PictureTarget::Format format = PictureTarget::FLOAT32;
     OffscreenContext::Profile profile = OffscreenContext::COMPATIBILITY;
-    bool depth = false; ///< also read the depth buffer
-    bool light = false; ///< OSG's head light
+    std::optional<int> device; ///< EGL's of this number, in place of OffscreenDisplay's default
+    bool depth = false;        ///< also read the depth buffer
+    bool light = false;        ///< OSG's head light
     bool computeNearFar = true;
     /// Called once, before the first frame: for what is to be attached to camera or context.
     std::function<void(osgViewer::Viewer&)> prepare;
@@ -47,7 +48,7 @@ struct RenderOptions
 };
 
 /// Renders a scene frame by frame in one context of its own, which lives as long as the renderer:
-/// the second frame finds what the first one cached.
+/// the second frame finds what the first one cached. Cameras of the scene find a window.
 class SceneRenderer
 {
 public:
@@ -58,8 +59,8 @@ public:
     const Status& status() const { return _status; }
     /// Renders options().frames frames; the last one's picture, empty on failure.
     FloatImage render();
-    /// May be changed between calls of render(); size, format, profile and threading stay as they
-    /// were.
+    /// May be changed between calls of render(); size, format, profile, device and threading stay
+    /// as they were.
     RenderOptions& options() { return _options; }
     osgViewer::Viewer& viewer() { return *_viewer; }
 
@@ -69,6 +70,8 @@ public:
     /// Attributes of the last frame in the statistics of camera and viewer whose names start with
     /// "osgVolumizer ". Collection is always on.
     std::map<std::string, double> counters() const;
+    /// Which device draws; of no name where there is no GL.
+    const DrawingDevice& device() const { return _context->device(); }
     /// The first GL error met at the end of a frame, or 0.
     unsigned glError() const { return _target->glError(); }
 
@@ -77,6 +80,7 @@ private:
 
     RenderOptions _options;
     Status _status;
+    osg::ref_ptr<SurfacelessGraphicsContext> _context;
     osg::ref_ptr<osgViewer::Viewer> _viewer;
     osg::ref_ptr<PictureTarget> _target;
     std::vector<double> _milliseconds;

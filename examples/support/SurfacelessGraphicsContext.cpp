@@ -4,9 +4,10 @@ namespace osgVolumizer {
 namespace support {
 
 SurfacelessGraphicsContext::SurfacelessGraphicsContext(int width, int height,
-                                                       OffscreenContext::Profile profile)
+                                                       OffscreenContext::Profile profile,
+                                                       std::optional<int> device)
 {
-    initialize(width, height, OffscreenContext::create(profile));
+    initialize(width, height, OffscreenContext::create(profile, nullptr, device));
 }
 
 SurfacelessGraphicsContext::SurfacelessGraphicsContext(int width, int height,
@@ -42,13 +43,29 @@ SurfacelessGraphicsContext::~SurfacelessGraphicsContext()
 
 bool SurfacelessGraphicsContext::realizeImplementation()
 {
-    _realized = valid();
-    return _realized;
+    if (!makeCurrentImplementation()) return false;
+    if (const GLubyte* renderer = glGetString(GL_RENDERER))
+        _device.renderer = reinterpret_cast<const char*>(renderer);
+    _device.platform = _context->display().platform();
+    _device.number = _context->display().device();
+    if (_window) bindWindow();
+    releaseContextImplementation();
+    _realized = true;
+    return true;
+}
+
+// It stays bound: OSG binds what is the default one after each framebuffer object.
+void SurfacelessGraphicsContext::bindWindow()
+{
+    getState()->initializeExtensionProcs();
+    _window->apply(*getState());
+    setDefaultFboId(_window->getHandle(getState()->getContextID()));
 }
 
 void SurfacelessGraphicsContext::closeImplementation()
 {
     _realized = false;
+    _window = nullptr; // while what it frees can still be told from what a later context has
     _context.reset();
 }
 

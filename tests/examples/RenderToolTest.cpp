@@ -9,6 +9,7 @@
 #include <osgVolumizer/ReadVolume.h>
 #include <osgVolumizer/VolumeGeometry.h>
 
+#include <osg/Texture2D>
 #include <osgDB/WriteFile>
 
 #include <filesystem>
@@ -61,6 +62,50 @@ std::string readText(const std::string& name)
 // The view of a square from the front, two units high.
 const std::string frontal = " --size 16 8 --eye 0 -5 0 --center 0 0 0 --ortho 2 ";
 
+// A square that faces the front, its lower left corner at (x, z).
+osg::ref_ptr<osg::Geometry> squareAt(float x, float z, float size, const osg::Vec4& color)
+{
+    return makeQuad(
+        {osg::Vec3(x, 0, z), {x + size, 0, z}, {x + size, 0, z + size}, {x, 0, z + size}}, color);
+}
+
+osg::ref_ptr<osg::Camera> cameraOf(osg::Camera::RenderOrder order, osg::Node* child)
+{
+    osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+    camera->setRenderOrder(order);
+    camera->setClearMask(GL_DEPTH_BUFFER_BIT);
+    camera->addChild(child);
+    return camera;
+}
+
+// Left a texture that is drawn to first: blue, and red in a quarter. Right a head-up display,
+// green, above what a nested camera shows, yellow.
+osg::ref_ptr<osg::Group> sceneWithCameras()
+{
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
+    texture->setTextureSize(16, 16);
+    texture->setInternalFormat(GL_RGBA);
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+    const osg::ref_ptr<osg::Camera> drawn =
+        cameraOf(osg::Camera::PRE_RENDER, squareAt(-2, -2, 2, osg::Vec4(1, 0, 0, 1)));
+    drawn->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    drawn->setClearColor(osg::Vec4(0, 0, 1, 1));
+    drawn->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
+    drawn->setViewport(0, 0, 16, 16);
+    drawn->attach(osg::Camera::COLOR_BUFFER, texture);
+    const osg::ref_ptr<osg::Geometry> screen =
+        osg::createTexturedQuadGeometry({-2, 0, -1}, {2, 0, 0}, {0, 0, 2});
+    screen->getOrCreateStateSet()->setTextureAttributeAndModes(0, texture);
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    scene->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    scene->addChild(drawn);
+    scene->addChild(screen);
+    scene->addChild(cameraOf(osg::Camera::POST_RENDER, squareAt(1, 0, 1, osg::Vec4(0, 1, 0, 1))));
+    scene->addChild(
+        cameraOf(osg::Camera::NESTED_RENDER, squareAt(1, -1, 1, osg::Vec4(1, 1, 0, 1))));
+    return scene;
+}
+
 } // namespace
 
 TEST_F(RenderToolGLTest, WritesFloatsAsTheyAre)
@@ -109,6 +154,61 @@ TEST_F(RenderToolGLTest, WritesStatistics)
         text, std::regex("\"millisecondsPerFrame\": \\[([0-9.e-]+, ){4}[0-9.e-]+\\]")))
         << text;
     EXPECT_NE(text.find("\"counters\": {"), std::string::npos) << text;
+}
+
+TEST_F(RenderToolGLTest, SaysWhichDeviceDrew)
+{
+    const std::string scene = writeSquare(osg::Vec4(0.5f, 1, 1, 1)) + frontal;
+    const auto statistics = [&](const std::string& options) {
+        const Outcome outcome = runTool(scene + options + " --stats " + file("stats.json") +
+                                        " --output " + file("picture.exr"));
+        EXPECT_EQ(outcome.code, 0) << outcome.text;
+        return readText(file("stats.json"));
+    };
+    const std::regex any("\"device\": \\{\\s*\"renderer\": \"([^\"]+)\",\\s*\"platform\": "
+                         "\"EGL_[A-Za-z_]+\",\\s*\"number\": (null|[0-9]+)\\s*\\}");
+    EXPECT_TRUE(std::regex_search(statistics(""), any)) << readText(file("stats.json"));
+
+    // The list has a line for each device, with what draws or why nothing does.
+    const Outcome list = runTool("--device list");
+    EXPECT_EQ(list.code, 0) << list.text;
+    std::istringstream lines(list.text);
+    std::string line;
+    for (int i = 0; std::getline(lines, line); ++i) {
+        const std::string number = std::to_string(i);
+        ASSERT_EQ(line.compare(0, number.size() + 2, number + "  "), 0) << line;
+        if (!OffscreenDisplay::open(i).ok()) continue;
+        std::smatch match;
+        const std::string text = statistics("--device " + number);
+        ASSERT_TRUE(std::regex_search(text, match, any)) << text;
+        EXPECT_EQ(match[1], line.substr(number.size() + 2));
+        EXPECT_EQ(match[2], number);
+        EXPECT_NE(text.find("\"EGL_EXT_platform_device\""), std::string::npos) << text;
+        const auto image = readFloatPicture(file("picture.exr"));
+        EXPECT_TRUE(image.ok() && image->at(8, 4) == glm::vec4(0.5f, 1, 1, 1));
+    }
+    const auto count = std::count(list.text.begin(), list.text.end(), '\n');
+    EXPECT_EQ(count, OffscreenDisplay::deviceCount());
+    EXPECT_GT(count, 0);
+}
+
+TEST_F(RenderToolGLTest, ScenesHaveCamerasOfTheirOwn)
+{
+    const osg::ref_ptr<osg::Group> scene = sceneWithCameras();
+    for (const char* type : {"osgt", "osgb", "osgx"}) {
+        const std::string name = file(std::string("cameras.") + type);
+        ASSERT_TRUE(osgDB::writeNodeFile(*scene, name));
+        const Outcome outcome = runTool(name + frontal + "--output " + file("picture.exr"));
+        EXPECT_EQ(outcome.code, 0);
+        EXPECT_EQ(outcome.text, "");
+        const auto image = readFloatPicture(file("picture.exr"));
+        ASSERT_TRUE(image.ok()) << image.status.text;
+        EXPECT_EQ(image->at(14, 1), glm::vec4(0.0f)) << type;
+        EXPECT_EQ(image->at(7, 5), glm::vec4(0, 0, 1, 1)) << type;
+        EXPECT_EQ(image->at(5, 3), glm::vec4(1, 0, 0, 1)) << type;
+        EXPECT_EQ(image->at(11, 5), glm::vec4(0, 1, 0, 1)) << type;
+        EXPECT_EQ(image->at(11, 3), glm::vec4(1, 1, 0, 1)) << type;
+    }
 }
 
 TEST_F(RenderToolGLTest, RendersVolumesAsAsked)
@@ -284,6 +384,11 @@ TEST_F(RenderToolGLTest, RefusesInOneSentence)
         {scene + " --output " + file("picture.unknown"), 1, "picture.unknown"},
         {scene + " --stats /nowhere/stats.json", 1, "/nowhere/stats.json"},
         {scene + " --eye 0 0 5 --center 0 0 0" + output, 1, "up"},
+        {scene + " --device 999" + output, 1, "'999'"},
+        {scene + " --device -1" + output, 1, "'-1'"},
+        {scene + " --device second" + output, 1, "'second'"},
+        {scene + " --device ''" + output, 1, "''"},
+        {scene + output + " --device", 2, "--device"},
         {scene, 2, "--output"},
         {output, 2, "scene"},
         {scene + " --frobnicate" + output, 2, "--frobnicate"},

@@ -360,7 +360,8 @@ struct SampledTarget : public osg::Camera::DrawCallback
                              GL_NEAREST);
         gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, framebuffers[1]);
         glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, picture.pixels.data());
-        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT, 0);
+        gl.glBindFramebuffer(GL_FRAMEBUFFER_EXT,
+                             info.getState()->getGraphicsContext()->getDefaultFboId());
     }
 
     const int width, height;

@@ -143,6 +143,7 @@ void Merger::merge(const osgUtil::RenderBin& bin, BinLeaves& leaves,
     leaves.clear();
     for (const LeafList::Entry& entry : all)
         leaves.push_back(entry.leaf);
+    _last = leaves.empty() ? nullptr : leaves.back();
 }
 
 glm::ivec4 Merger::viewport() const

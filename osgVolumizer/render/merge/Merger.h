@@ -8,6 +8,7 @@
 #include <osg/FrameStamp>
 #include <osg/observer_ptr>
 #include <osgUtil/RenderBin>
+#include <osgUtil/RenderLeaf>
 
 #include <memory>
 #include <vector>
@@ -48,6 +49,9 @@ private:
 
     std::vector<std::unique_ptr<VolumeInstance>> _volumes;
     osg::ref_ptr<osgUtil::RenderBin::SortCallback> _chained;
+    /// OSG lets go of the leaves of a stage once it is drawn, but looks at the last one of them
+    /// before it draws the next stage.
+    osg::ref_ptr<osgUtil::RenderLeaf> _last;
     osg::observer_ptr<const osg::Camera> _camera; ///< holds the bin, and so this
     osg::ref_ptr<const osg::FrameStamp> _frameStamp;
     osg::ref_ptr<const osg::Viewport> _viewport; ///< of the volume that came first
