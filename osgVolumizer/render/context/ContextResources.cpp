@@ -1,6 +1,7 @@
 #include "ContextResources.h"
 
 #include "ContextRefusals.h"
+#include "MeasurePrecision.h"
 #include "SharedStateSets.h"
 
 #include <osg/ContextData>
@@ -75,6 +76,7 @@ ContextResources::ContextResources(osg::State& state) : limits(queryContextLimit
     osg::setGLExtensionFuncPtr(glGetFramebufferAttachmentParameteriv,
                                "glGetFramebufferAttachmentParameteriv",
                                "glGetFramebufferAttachmentParameterivEXT");
+    if (limits.check().ok()) setPrecision(limits, measurePrecision(state, *this), state);
 }
 
 void ContextResources::release(osg::GLExtensions& gl)
@@ -108,6 +110,28 @@ std::shared_ptr<ContextResources> contextResources(osg::State& state)
         osg::get<ContextWatch>(state.getContextID());
     }
     return entry;
+}
+
+Precision precisionOf(const osg::State& state)
+{
+    std::lock_guard<std::mutex> lock(registryMutex());
+    const auto entry = registry().find(state.getContextID());
+    return entry != registry().end() && entry->second ? entry->second->limits.precision
+                                                      : Precision();
+}
+
+Precision leastPrecision()
+{
+    std::lock_guard<std::mutex> lock(registryMutex());
+    Precision least;
+    bool known = false;
+    for (const auto& entry : registry()) {
+        if (!entry.second) continue;
+        const Precision& p = entry.second->limits.precision;
+        if (!known || p.filterWeight > least.filterWeight) least = p;
+        known = true;
+    }
+    return least;
 }
 
 std::size_t contextResourcesCount()

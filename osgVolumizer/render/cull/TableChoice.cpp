@@ -19,7 +19,8 @@ bool keepsTolerance(const VolumeAppearance& appearance, const PreparedGeometry& 
 
 } // namespace
 
-TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
+TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                        const Precision& ofTextures)
 {
     const osg::ref_ptr<AppearanceData> data = renderData<AppearanceData>(appearance);
     const osg::Vec2d range = appearance.getVoxels()->getRange();
@@ -27,7 +28,7 @@ TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeomet
         return data->tables.get(*appearance.getLookupTable(), range, lookup);
     };
     const VolumeAppearance::Lookup lookup = usedLookup(appearance, prepared);
-    if (!keepsTolerance(appearance, prepared)) return {tableOf(lookup), std::nullopt};
+    if (!keepsTolerance(appearance, prepared)) return {tableOf(lookup), std::nullopt, false};
     SamplingQuestion question;
     question.tolerance = appearance.getErrorTolerance();
     if (lookup != VolumeAppearance::PREINTEGRATED)
@@ -39,7 +40,8 @@ TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeomet
     question.box = prepared.regionBox;
     question.nearest = appearance.getInterpolation() == VolumeAppearance::NEAREST;
     const core::PeriodChoice choice = data->choices.get(*appearance.getVoxels(), question);
-    return {choice.integrals ? question.integrals : question.midpoints, choice.periodVoxel};
+    return {choice.integrals ? question.integrals : question.midpoints, choice.periodVoxel,
+            !question.nearest && !choice.permits(ofTextures.filterWeight, question.tolerance)};
 }
 
 } // namespace render

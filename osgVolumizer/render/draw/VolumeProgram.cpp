@@ -45,8 +45,8 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features)
     result->setName("osgVolumizer " + kind);
     result->addShader(makeShader(osg::Shader::VERTEX, header, shaderSource(kind + ".vert.glsl")));
     std::string fragment;
-    for (const char* file : {"voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl",
-                             "skipping.glsl", "segment.glsl"})
+    for (const char* file : {"filtering.glsl", "voxels.glsl", "transfer.glsl", "ray.glsl",
+                             "shading.glsl", "skipping.glsl", "segment.glsl"})
         fragment += shaderSource(file);
     if (features.paintCount > 0) fragment += paintSource(features.paintCount);
     fragment +=
