@@ -28,6 +28,7 @@ protected:
     void SetUp() override
     {
         GLTest::SetUp();
+        _here = support::precision(); // makes another context current
         _context = new support::SurfacelessGraphicsContext(8, 8);
         ASSERT_TRUE(_context->realize() && _context->makeCurrent());
         _hooks = &support::userObject<render::ContextHooks>(*_context);
@@ -45,6 +46,7 @@ protected:
 
     osg::ref_ptr<support::SurfacelessGraphicsContext> _context;
     render::ContextHooks* _hooks = nullptr;
+    Precision _here;
 };
 
 // All that a measurement might change.
@@ -136,7 +138,7 @@ TEST_F(PrecisionOfAContext, IsThatOfTheBitsEmulated)
         EXPECT_TRUE(p.measured);
         const double expected = std::ldexp(1.0, -bits - 1);
         EXPECT_GE(p.filterWeight, expected - 1e-6) << bits;
-        EXPECT_LE(p.filterWeight, expected + support::precision().filterWeight + 1e-6) << bits;
+        EXPECT_LE(p.filterWeight, expected + _here.filterWeight + 1e-6) << bits;
     }
 }
 
@@ -164,4 +166,50 @@ TEST_F(PrecisionOfAContext, IsTheWorstWhereTheCardRefuses)
     EXPECT_EQ(limits.precision.filterWeight, Precision().filterWeight);
     EXPECT_FALSE(limits.filtersFloatsBest);
     EXPECT_NE(getLastError().text.find("could not be measured"), std::string::npos);
+}
+
+// What filtering is off by shows in pictures, and no more than the bound of the tests says.
+TEST_F(PrecisionOfAContext, BoundsWhatPicturesAreOffBy)
+{
+    constexpr int SIZE = 21;
+    const Points points = {{0.0, {0.1, 0.8, 0.2, 0.02}}, {1.0, {1.0, 0.3, 0.1, 0.1}}};
+    const osg::ref_ptr<VolumeAppearance> volume = makeVolume(makeVoxels(glm::ivec3(SIZE), bumps));
+    volume->setLookupTable(makeTable(points));
+    volume->setSamplingPeriod(osg::Vec3d(0.4, 0.4, 0.4));
+    const RenderOptions options = RenderOptions().size(80, 80).perspective(40.0).lookAt(
+        {45, -40, 35}, {10, 10, 10}, {0, 0, 1});
+    volume->setExactFiltering(true);
+    const support::FloatImage exact = support::renderScene(volume, options);
+    volume->setExactFiltering(false);
+    for (const int bits : {0, 4, 8}) {
+        Precision p = _here;
+        if (bits > 0) p.filterWeight = std::max(p.filterWeight, std::ldexp(1.0, -bits - 1));
+        const auto image =
+            support::renderScene(volume, support::limited(options, [bits](ContextLimits& limits) {
+                                     if (bits > 0) limits.filterBits = bits;
+                                 }));
+        // Samples of bumps() differ by less than 0.14 from one to the next; no ray is longer than
+        // the diagonal.
+        const double bound = support::filteringBound(points, 0.14, std::sqrt(3.0) * (SIZE - 1), p);
+        const double worst = support::compare(image, exact).maximum;
+        EXPECT_LE(worst, bound + 1e-5) << bits;
+        EXPECT_GE(worst, bits > 0 ? 1e-3 * bound : 0.0) << bits;
+    }
+}
+
+// Weights of 4 bits would be off by far more. In the first frame nothing is known of the context.
+TEST_F(PrecisionOfAContext, LetsAnErrorToleranceHaveExactFiltering)
+{
+    const osg::ref_ptr<VolumeAppearance> volume = makeVolume(makeVoxels(glm::ivec3(21), bumps));
+    volume->setLookupTable(makeTable({{0.0, {0.1, 0.8, 0.2, 0.02}}, {1.0, {1.0, 0.3, 0.1, 0.1}}}));
+    RenderOptions options = RenderOptions().size(80, 80).perspective(40.0).lookAt(
+        {45, -40, 35}, {10, 10, 10}, {0, 0, 1});
+    options = support::limited(options, [](ContextLimits& limits) { limits.filterBits = 4; });
+    ASSERT_TRUE(volume->setErrorTolerance(1e-3));
+    support::SceneRenderer renderer(volume, options);
+    const support::FloatImage unknown = renderer.render(), known = renderer.render();
+    volume->setExactFiltering(true);
+    const support::FloatImage exact = renderer.render();
+    EXPECT_LE(support::compare(unknown, exact).maximum, 2e-4);
+    EXPECT_LE(support::compare(known, exact).maximum, 2e-4);
 }

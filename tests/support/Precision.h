@@ -1,5 +1,6 @@
 #pragma once
 
+#include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/core/transfer/TransferFunction.h>
 #include <osgVolumizer/render/context/ContextResources.h>
 #include <osgVolumizer/render/context/Precision.h>
@@ -32,16 +33,27 @@ inline const render::Precision& precision()
 }
 
 /// Whether weights are as good as float arithmetic: then no test may be off by more than it says.
+inline bool isExact(const render::Precision& precision)
+{
+    return precision.filterWeight < 1e-6;
+}
 inline bool filtersExactly()
 {
-    return precision().filterWeight < 1e-6;
+    return isExact(precision());
+}
+
+/// For tests of something else than filtering, such as orders of convergence: where that of the
+/// card is not exact, that of the shader.
+inline void filterExactly(VolumeAppearance& volume)
+{
+    volume.setExactFiltering(!filtersExactly());
 }
 
 /// What filtering may add to the error of a value between samples that differ by no more than
 /// `difference` from one to the next: see render::filteringError(). Zero where it is exact.
-inline double filteringBound(double difference)
+inline double filteringBound(double difference, const render::Precision& of = precision())
 {
-    return filtersExactly() ? 0.0 : render::filteringError(precision(), difference);
+    return isExact(of) ? 0.0 : render::filteringError(of, difference);
 }
 
 /// Steepest slopes of a table over the fraction of the range. Expects one without jumps, and
@@ -74,10 +86,11 @@ inline TableSlopes slopesOf(const std::vector<core::TransferFunction::Point>& po
 /// integrates to no more than 1; a change of t changes it by T times c less what comes from behind,
 /// so by no more than its integral.
 inline double filteringBound(const std::vector<core::TransferFunction::Point>& points,
-                             double difference, double length)
+                             double difference, double length,
+                             const render::Precision& of = precision())
 {
     const TableSlopes slopes = slopesOf(points);
-    return filteringBound(difference) * (slopes.color + slopes.extinction * length);
+    return filteringBound(difference, of) * (slopes.color + slopes.extinction * length);
 }
 
 } // namespace support

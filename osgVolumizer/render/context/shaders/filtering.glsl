@@ -3,8 +3,9 @@
 #ifdef FILTER_BITS
 vec3 filterPlace(vec3 place, ivec3 size)
 {
-    vec3 p = floor((place * vec3(size) - 0.5) * exp2(float(FILTER_BITS)) + 0.5);
-    return (p * exp2(-float(FILTER_BITS)) + 0.5) / vec3(size);
+    const float steps = float(1 << FILTER_BITS);
+    vec3 p = floor((place * vec3(size) - 0.5) * steps + 0.5);
+    return (p / steps + 0.5) / vec3(size);
 }
 #else
 #define filterPlace(place, size) (place)
