@@ -1,6 +1,5 @@
 #include "MeasurePrecision.h"
 
-#include "ContextHooks.h"
 #include "GLErrors.h"
 #include "ReportOnce.h"
 #include "ScreenPass.h"
@@ -107,9 +106,7 @@ std::vector<glm::vec4> readFractions(osg::State& state, ContextResources& resour
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     std::vector<glm::vec4> pixels;
-    const ContextHooks* hooks = ContextHooks::of(state);
-    const AllocationRequest target = {AllocationRequest::TARGET, {SIDE, SIDE, 1}, GL_RGBA32F_ARB};
-    if (hooks && hooks->refuses && hooks->refuses(target)) return pixels;
+    if (!resources.limits.floatTargets) return pixels;
     discardErrors();
     const StateScope scope(state);
     const Names names(gl);
