@@ -134,7 +134,7 @@ public:
     Lookup getLookup() const { return _lookup; }
     /// Texture units often interpolate with 8-bit weights, and some also round 8-bit samples to 8
     /// bits. On: interpolation in 32-bit floats from fetched samples, about half as fast. Off by
-    /// default.
+    /// default; on where an error tolerance needs it.
     void setExactFiltering(bool exact) { _exactFiltering = exact; }
     bool getExactFiltering() const { return _exactFiltering; }
     void setRayFunction(RayFunction function) { _rayFunction = function; }
@@ -220,6 +220,9 @@ public:
         Lookup lookup = AFTER_INTERPOLATION;
         RayFunction rayFunction = COMPOSITE;
         bool shading = false;
+        /// Filtering is exact: asked for, or needed for an error tolerance. Whether it is needed is
+        /// measured in each context; here it is said for the least precise one that there is.
+        bool exactFiltering = false;
         /// A sentence for each that differs from what was asked for.
         std::vector<std::string> reasons;
     };

@@ -125,3 +125,23 @@ TEST_F(SettingsInForce, NothingIsDrawnOfAnEmptyVolume)
     _appearance->setVoxels(new Voxels);
     EXPECT_TRUE(hasReason("nothing is drawn"));
 }
+
+// Nothing is known of any context here, so that weights are taken to have 8 bits.
+TEST_F(SettingsInForce, FilteringIsExactForAToleranceThatTexturesMayNotKeep)
+{
+    auto* source = static_cast<MemoryVoxelSource*>(_appearance->getVoxels()->getSource());
+    auto* values = static_cast<unsigned char*>(source->data());
+    for (int i = 0; i < 8 * 8 * 8; ++i)
+        values[i] = static_cast<unsigned char>(i * 101);
+    EXPECT_FALSE(settings().exactFiltering);
+    ASSERT_TRUE(_appearance->setErrorTolerance(1e-3));
+    EXPECT_TRUE(settings().exactFiltering);
+    EXPECT_TRUE(hasReason("filtering is exact"));
+    _appearance->setInterpolation(A::NEAREST);
+    EXPECT_FALSE(settings().exactFiltering);
+    EXPECT_FALSE(hasReason("filtering is exact"));
+    _appearance->setInterpolation(A::LINEAR);
+    _appearance->setExactFiltering(true);
+    EXPECT_TRUE(settings().exactFiltering);
+    EXPECT_FALSE(hasReason("filtering is exact"));
+}

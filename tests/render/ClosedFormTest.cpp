@@ -5,6 +5,7 @@
 #include <oracles/ClosedForms.h>
 #include <oracles/Ray.h>
 #include <support/GLTest.h>
+#include <support/Precision.h>
 
 #include <cmath>
 
@@ -47,6 +48,7 @@ protected:
     FloatImage picture(TwinVolume& twin, double period) const
     {
         twin.node->setTechnique(GetParam().technique);
+        support::filterExactly(*twin.node); // for the order of sampling
         twin.setPeriod(period);
         return support::renderScene(twin.node, viewOf(GetParam()));
     }

@@ -2,6 +2,7 @@
 
 #include "MixedScene.h"
 
+#include <support/DebugOutput.h>
 #include <support/GLTest.h>
 
 #include <osgVolumizer/render/context/ContextResources.h>
@@ -324,8 +325,10 @@ TEST_F(MergeView, AgreesWithTheOracle)
 /// A framebuffer with several samples a pixel, or one, bound while a camera draws, and its picture.
 struct SampledTarget : public osg::Camera::DrawCallback
 {
-    SampledTarget(const RenderOptions& options, GLsizei n)
-        : width(options.width), height(options.height), samples(n), picture(width, height)
+    SampledTarget(const RenderOptions& options, GLsizei n, GLenum color = GL_RGBA32F_ARB,
+                  GLenum depth = GL_DEPTH24_STENCIL8_EXT)
+        : width(options.width), height(options.height), samples(n), colorFormat(color),
+          depthFormat(depth), picture(width, height)
     {
     }
     void operator()(osg::RenderInfo& info) const override
@@ -341,12 +344,10 @@ struct SampledTarget : public osg::Camera::DrawCallback
                     gl.glGenRenderbuffers(1, &buffer);
                     gl.glBindRenderbuffer(GL_RENDERBUFFER_EXT, buffer);
                     gl.glRenderbufferStorageMultisample(
-                        GL_RENDERBUFFER_EXT, n, color ? GL_RGBA32F_ARB : GL_DEPTH24_STENCIL8_EXT,
-                        width, height);
-                    gl.glFramebufferRenderbuffer(GL_FRAMEBUFFER_EXT,
-                                                 color ? GL_COLOR_ATTACHMENT0_EXT
-                                                       : GL_DEPTH_STENCIL_ATTACHMENT,
-                                                 GL_RENDERBUFFER_EXT, buffer);
+                        GL_RENDERBUFFER_EXT, n, color ? colorFormat : depthFormat, width, height);
+                    gl.glFramebufferRenderbuffer(
+                        GL_FRAMEBUFFER_EXT, color ? GL_COLOR_ATTACHMENT0_EXT : depthAttachment(),
+                        GL_RENDERBUFFER_EXT, buffer);
                 }
                 EXPECT_EQ(gl.glCheckFramebufferStatus(GL_FRAMEBUFFER_EXT),
                           GLenum(GL_FRAMEBUFFER_COMPLETE_EXT));
@@ -364,12 +365,45 @@ struct SampledTarget : public osg::Camera::DrawCallback
                              info.getState()->getGraphicsContext()->getDefaultFboId());
     }
 
+    GLenum depthAttachment() const
+    {
+        const bool stencil =
+            depthFormat == GL_DEPTH24_STENCIL8_EXT || depthFormat == GL_DEPTH32F_STENCIL8;
+        return stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT_EXT;
+    }
+
     const int width, height;
     const GLsizei samples;
+    const GLenum colorFormat, depthFormat;
     mutable GLuint framebuffers[2] = {0, 0};
     mutable bool drawing = false;
     mutable FloatImage picture;
 };
+
+// A scene's picture in such a target. Nothing in drawing it may be an error, even one that somebody
+// takes off.
+FloatImage pictureIn(const SampledTarget& target, osg::Node* scene, const RenderOptions& options)
+{
+    osg::ref_ptr<osg::Camera> nested = new osg::Camera;
+    nested->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+    nested->setRenderOrder(osg::Camera::PRE_RENDER);
+    nested->setViewport(0, 0, options.width, options.height);
+    nested->setClearColor(osg::Vec4());
+    nested->setViewMatrix(options.view);
+    nested->setProjectionMatrix(options.projection);
+    nested->setInitialDrawCallback(const_cast<SampledTarget*>(&target));
+    nested->setFinalDrawCallback(const_cast<SampledTarget*>(&target));
+    nested->addChild(scene);
+    const osg::ref_ptr<support::DebugOutput> debug = new support::DebugOutput;
+    support::SceneRenderer renderer(nested,
+                                    support::prepared(options, [&debug](osgViewer::Viewer& viewer) {
+                                        viewer.setRealizeOperation(debug);
+                                    }));
+    renderer.render();
+    EXPECT_EQ(renderer.glError(), 0u);
+    EXPECT_TRUE(debug->messages().empty()) << debug->messages().front();
+    return target.picture;
+}
 
 // Framebuffers with several samples a pixel: opaque edges stay smooth, the rest is as with one.
 TEST_F(MergeView, SeveralSamplesAPixel)
@@ -377,20 +411,7 @@ TEST_F(MergeView, SeveralSamplesAPixel)
     const RenderOptions options = viewOf();
     const auto pictureOf = [&options](osg::Node* scene, GLsizei samples) {
         const osg::ref_ptr<SampledTarget> target = new SampledTarget(options, samples);
-        osg::ref_ptr<osg::Camera> nested = new osg::Camera;
-        nested->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
-        nested->setRenderOrder(osg::Camera::PRE_RENDER);
-        nested->setViewport(0, 0, options.width, options.height);
-        nested->setClearColor(osg::Vec4());
-        nested->setViewMatrix(options.view);
-        nested->setProjectionMatrix(options.projection);
-        nested->setInitialDrawCallback(target);
-        nested->setFinalDrawCallback(target);
-        nested->addChild(scene);
-        support::SceneRenderer renderer(nested, options);
-        renderer.render();
-        EXPECT_EQ(renderer.glError(), 0u);
-        return target->picture;
+        return pictureIn(*target, scene, options);
     };
     // Nothing opaque: as with one sample.
     const FloatImage translucent = alone(options.view, options.projection);
@@ -407,6 +428,28 @@ TEST_F(MergeView, SeveralSamplesAPixel)
         support::coveredPixels(oracle::awayFromSilhouettes(_scene.truth(), cameraOf(options), 3.0));
     EXPECT_LE(support::compare(four, one, away).maximum, 4e-3);
     EXPECT_GT(support::compare(four, one).maximum, 0.02);
+}
+
+// Whatever they hold: the depths are copied to a buffer of the same format, since GL resolves
+// samples of no other.
+TEST_F(MergeView, SeveralSamplesOfEveryFormat)
+{
+    const RenderOptions options = viewOf();
+    _scene.addMesh(sphereMesh({14, 10, 18}, 7.0, 48, 24), {0.9, 0.8, 0.1, 1.0}, true);
+    const support::Mask away =
+        support::coveredPixels(oracle::awayFromSilhouettes(_scene.truth(), cameraOf(options), 3.0));
+    const FloatImage expected = alone(options.view, options.projection);
+    for (const GLenum color : {GL_RGBA8, GL_RGBA16F_ARB, GL_RGBA32F_ARB})
+        for (const GLenum depth :
+             {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F,
+              GL_DEPTH24_STENCIL8_EXT, GL_DEPTH32F_STENCIL8}) {
+            const osg::ref_ptr<SampledTarget> target = new SampledTarget(options, 4, color, depth);
+            const FloatImage image = pictureIn(*target, _scene.root(), options);
+            const double rounding = color == GL_RGBA8 ? 1.0 / 255.0 : 1e-3;
+            // 16 bits of depth are a few hundredths of a voxel here.
+            EXPECT_LE(support::compare(image, expected, away).maximum, 4e-3 + rounding)
+                << std::hex << color << " " << depth;
+        }
 }
 
 // Closing a context frees what was made in it, wherever the scene has gone in the meantime.

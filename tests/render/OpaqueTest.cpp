@@ -3,6 +3,7 @@
 #include "Volumes.h"
 
 #include <support/GLTest.h>
+#include <support/Precision.h>
 #include <support/Shapes.h>
 
 using namespace osgVolumizer;
@@ -33,6 +34,7 @@ protected:
         osg::ref_ptr<Voxels> voxels = makeVoxels({25, 25, 25}, bumps);
         ASSERT_TRUE(voxels->setBrickSize({13, 13, 13}));
         _twin = makeTwin(voxels, smoothPoints(0.05), GetParam());
+        support::filterExactly(*_twin.node); // errors are those of sampling, down to 5e-6
         _group = new osg::Group;
         _scene = oracleScene(_twin.oracle);
     }

@@ -9,6 +9,7 @@
 #include <oracles/Projection.h>
 #include <oracles/Ray.h>
 #include <support/GLTest.h>
+#include <support/Precision.h>
 #include <support/Shapes.h>
 
 #include <cmath>
@@ -81,6 +82,7 @@ TEST_F(RayFunction, ReducesTheValuesOfEveryRay)
                                     VolumeAppearance::AVERAGE, VolumeAppearance::SUM})
         for (const bool perspective : {true, false}) {
             TwinVolume twin = makeTwinOf(function);
+            support::filterExactly(*twin.node); // for the order of sampling
             const RenderOptions options = view(perspective);
             const FloatImage expected = expectedPicture(twin.oracle, options, function);
             const support::Mask inside = awayFromSilhouettes(oracleScene(twin.oracle), options);

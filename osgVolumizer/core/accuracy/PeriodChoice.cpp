@@ -1,5 +1,6 @@
 #include "PeriodChoice.h"
 
+#include "FilterError.h"
 #include "RandomRays.h"
 
 #include <glm/geometric.hpp>
@@ -23,6 +24,9 @@ constexpr double LONGEST = 16.0, SHORTEST = 0.0625; // periods, voxels
 // Errors of few rays, and of steps that count along the view axis and not along the ray, are off by
 // this.
 constexpr double SAFETY = 1.35;
+// The part of a tolerance that filtering may take. Squares of errors add, so that it is within what
+// SAFETY leaves.
+constexpr double FILTER_SHARE = 0.25;
 // What a step with integrals costs, in steps without.
 constexpr double INTEGRAL_COST = 1.25;
 
@@ -100,16 +104,28 @@ PeriodChoice cheapest(RandomRays& rays, const PeriodQuestion& q, const glm::dvec
     return runs.periodVoxel > INTEGRAL_COST * points.periodVoxel ? runs : points;
 }
 
-} // namespace
-
-PeriodChoice choosePeriod(const FractionField& field, const PeriodQuestion& question)
+PeriodChoice choose(const FractionField& field, const PeriodQuestion& question)
 {
-    if (question.box.empty()) return {};
     RandomRays coarse(field, question, SAMPLES_PER_VOXEL);
     const PeriodChoice choice = cheapest(coarse, question, {LONGEST, COARSE_TRUTH});
     if (choice.error <= question.tolerance) return choice;
     RandomRays fine(field, question, 4.0 * SAMPLES_PER_VOXEL);
     return cheapest(fine, question, {COARSE_TRUTH, SHORTEST});
+}
+
+} // namespace
+
+PeriodChoice choosePeriod(const FractionField& field, const PeriodQuestion& question)
+{
+    if (question.box.empty()) return {};
+    PeriodChoice choice = choose(field, question);
+    choice.filterError = core::filterError(field, question, PeriodChoice::FILTER_WEIGHT);
+    return choice;
+}
+
+bool PeriodChoice::permits(double filterWeight, double tolerance) const
+{
+    return filterError * filterWeight <= FILTER_SHARE * tolerance * FILTER_WEIGHT;
 }
 
 } // namespace core

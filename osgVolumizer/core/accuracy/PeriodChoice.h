@@ -19,6 +19,13 @@ struct PeriodChoice
     bool integrals = false;
     /// Expected: root mean square over the components of pixels that show something.
     double error = 0.0;
+    /// What weights of interpolation that are off by FILTER_WEIGHT would add, see filterError(); in
+    /// proportion for others.
+    double filterError = 0.0;
+    static constexpr double FILTER_WEIGHT = 1.0 / 512.0; ///< as of texture units of 8 bits
+
+    /// Whether weights that are off by so much keep a tolerance, together with the period.
+    bool permits(double filterWeight, double tolerance) const;
 };
 
 /// What a choice is made for.

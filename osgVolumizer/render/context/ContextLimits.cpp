@@ -4,7 +4,7 @@
 
 #include <osg/GLExtensions>
 
-#include <cstring>
+#include <atomic>
 
 namespace osgVolumizer {
 namespace render {
@@ -12,6 +12,8 @@ namespace render {
 namespace {
 
 constexpr double NEEDED_VERSION = 3.3; // shaders, and what they fetch from
+
+std::atomic<int> filterBitsOfAll{0};
 
 void changeByHooks(ContextLimits& limits, const osg::State& state)
 {
@@ -60,10 +62,18 @@ ContextLimits queryContextLimits(osg::State& state)
         osg::isGLExtensionSupported(state.getContextID(), "GL_ARB_color_buffer_float");
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits.texture3DSize);
     glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &limits.textureUnits);
-    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    limits.filtersFloatsBest = renderer && std::strstr(renderer, "llvmpipe");
+    limits.filterBits = filterBitsOfAll;
     changeByHooks(limits, state);
     return limits;
+}
+
+void setPrecision(ContextLimits& limits, const Precision& precision, const osg::State& state)
+{
+    limits.precision = precision;
+    // Results of 8 bits come from arithmetic of 8 bits, beside which floats have a path of their
+    // own.
+    limits.filtersFloatsBest = precision.measured && precision.byteTexel > 0.25 / 255.0;
+    changeByHooks(limits, state);
 }
 
 int texture3DSizeOf(const osg::State& state)
@@ -74,6 +84,19 @@ int texture3DSizeOf(const osg::State& state)
 int textureUnitsOf(const osg::State& state)
 {
     return knownLimits(state).textureUnits;
+}
+
+int filterBitsOf(const osg::State& state)
+{
+    ContextLimits limits;
+    limits.filterBits = filterBitsOfAll;
+    changeByHooks(limits, state);
+    return limits.filterBits;
+}
+
+void setFilterBits(int bits)
+{
+    filterBitsOfAll = bits;
 }
 
 } // namespace render

@@ -1,6 +1,7 @@
 #include "ContextResources.h"
 
 #include "ContextRefusals.h"
+#include "MeasurePrecision.h"
 #include "SharedStateSets.h"
 
 #include <osg/ContextData>
@@ -75,6 +76,7 @@ ContextResources::ContextResources(osg::State& state) : limits(queryContextLimit
     osg::setGLExtensionFuncPtr(glGetFramebufferAttachmentParameteriv,
                                "glGetFramebufferAttachmentParameteriv",
                                "glGetFramebufferAttachmentParameterivEXT");
+    if (limits.check().ok()) setPrecision(limits, measurePrecision(state, *this), state);
 }
 
 void ContextResources::release(osg::GLExtensions& gl)
@@ -101,13 +103,38 @@ void StreamBuffer::release(osg::GLExtensions& gl)
 
 std::shared_ptr<ContextResources> contextResources(osg::State& state)
 {
-    std::lock_guard<std::mutex> lock(registryMutex());
-    std::shared_ptr<ContextResources>& entry = registry()[state.getContextID()];
-    if (!entry) {
-        entry = std::make_shared<ContextResources>(state);
-        osg::get<ContextWatch>(state.getContextID());
+    const unsigned id = state.getContextID();
+    {
+        std::lock_guard<std::mutex> lock(registryMutex());
+        const auto entry = registry().find(id);
+        if (entry != registry().end()) return entry->second;
     }
-    return entry;
+    // Draws, and may report: nobody else waits for that. One thread at a time has the context.
+    const auto made = std::make_shared<ContextResources>(state);
+    std::lock_guard<std::mutex> lock(registryMutex());
+    registry()[id] = made;
+    osg::get<ContextWatch>(id);
+    return made;
+}
+
+Precision precisionOf(const osg::State& state)
+{
+    std::lock_guard<std::mutex> lock(registryMutex());
+    const auto entry = registry().find(state.getContextID());
+    return entry != registry().end() ? entry->second->limits.precision : Precision();
+}
+
+Precision leastPrecision()
+{
+    std::lock_guard<std::mutex> lock(registryMutex());
+    Precision least;
+    bool known = false;
+    for (const auto& entry : registry()) {
+        const Precision& p = entry.second->limits.precision;
+        if (!known || p.filterWeight > least.filterWeight) least = p;
+        known = true;
+    }
+    return least;
 }
 
 std::size_t contextResourcesCount()

@@ -62,6 +62,10 @@ private:
 /// The resources of the current context; call only while it is current. They are released with the
 /// context, when OSG deletes or discards its objects.
 std::shared_ptr<ContextResources> contextResources(osg::State& state);
+/// How precise a context is, as far as it is known yet: in any thread.
+Precision precisionOf(const osg::State& state);
+/// That of the least precise context that there is; as of an unknown one where there is none.
+Precision leastPrecision();
 /// Of how many contexts there are resources.
 std::size_t contextResourcesCount();
 /// Follows osg::Object::releaseGLObjects: one context's resources, or all for null.

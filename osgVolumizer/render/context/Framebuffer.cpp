@@ -56,8 +56,8 @@ std::vector<GLenum> queryDrawBuffers()
     return buffers;
 }
 
-// Formats in the order in which they are likely to be the framebuffer's.
-std::vector<GLenum> candidates(const Framebuffer& framebuffer, GLbitfield what)
+// Formats in the order in which they are likely to be a framebuffer's.
+std::vector<GLenum> likelyFormats(const Framebuffer& framebuffer, GLbitfield what)
 {
     std::vector<GLenum> formats = {GL_DEPTH24_STENCIL8_EXT, GL_DEPTH32F_STENCIL8};
     if (framebuffer.floatDepth) std::swap(formats[0], formats[1]);
@@ -71,10 +71,45 @@ std::vector<GLenum> candidates(const Framebuffer& framebuffer, GLbitfield what)
     return formats;
 }
 
+// The format of the depths of the framebuffer that is drawn to where they are in a render buffer,
+// which alone tells whatever it holds; else GL_NONE.
+GLenum renderbufferFormat(osg::GLExtensions& gl, const ContextResources& resources,
+                          const Framebuffer& framebuffer, GLbitfield what)
+{
+    if (framebuffer.draw == 0) return GL_NONE;
+    const GLenum attachment = what & GL_DEPTH_BUFFER_BIT ? GLenum(GL_DEPTH_ATTACHMENT_EXT)
+                                                         : GLenum(GL_STENCIL_ATTACHMENT_EXT);
+    if (ask(resources, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE_EXT) !=
+        GL_RENDERBUFFER_EXT)
+        return GL_NONE;
+    GLint bound = 0, format = GL_NONE;
+    glGetIntegerv(GL_RENDERBUFFER_BINDING_EXT, &bound);
+    const GLint name = ask(resources, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME_EXT);
+    gl.glBindRenderbuffer(GL_RENDERBUFFER_EXT, static_cast<GLuint>(name));
+    gl.glGetRenderbufferParameteriv(GL_RENDERBUFFER_EXT, GL_RENDERBUFFER_INTERNAL_FORMAT_EXT,
+                                    &format);
+    gl.glBindRenderbuffer(GL_RENDERBUFFER_EXT, static_cast<GLuint>(bound));
+    return static_cast<GLenum>(format);
+}
+
+// Formats to be tried. Trials that fail are errors to whoever listens, so what is known comes
+// first.
+std::vector<GLenum> candidates(osg::GLExtensions& gl, const ContextResources& resources,
+                               const Framebuffer& framebuffer, GLbitfield what)
+{
+    std::vector<GLenum> formats = likelyFormats(framebuffer, what);
+    const auto known = std::find(formats.begin(), formats.end(),
+                                 renderbufferFormat(gl, resources, framebuffer, what));
+    if (known != formats.end()) std::rotate(formats.begin(), known, known + 1);
+    return formats;
+}
+
 // Whether a pixel can be blitted from the framebuffer to a buffer of the format.
 bool canBlit(osg::GLExtensions& gl, const Framebuffer& framebuffer, GLenum format, GLbitfield what)
 {
     GLuint renderbuffer = 0, target = 0;
+    GLint bound = 0;
+    glGetIntegerv(GL_RENDERBUFFER_BINDING_EXT, &bound);
     gl.glGenRenderbuffers(1, &renderbuffer);
     gl.glGenFramebuffers(1, &target);
     gl.glBindRenderbuffer(GL_RENDERBUFFER_EXT, renderbuffer);
@@ -88,11 +123,12 @@ bool canBlit(osg::GLExtensions& gl, const Framebuffer& framebuffer, GLenum forma
     glReadBuffer(GL_NONE);
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, framebuffer.draw);
     discardErrors();
-    gl.glBlitFramebuffer(0, 0, 1, 1, 0, 0, 1, 1, what, GL_NEAREST);
-    const bool done = glGetError() == GL_NO_ERROR;
+    bool done = gl.glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER_EXT) == GL_FRAMEBUFFER_COMPLETE_EXT;
+    if (done) gl.glBlitFramebuffer(0, 0, 1, 1, 0, 0, 1, 1, what, GL_NEAREST);
+    done = glGetError() == GL_NO_ERROR && done;
     gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, framebuffer.draw);
     gl.glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, framebuffer.read);
-    gl.glBindRenderbuffer(GL_RENDERBUFFER_EXT, 0);
+    gl.glBindRenderbuffer(GL_RENDERBUFFER_EXT, static_cast<GLuint>(bound));
     gl.glDeleteFramebuffers(1, &target);
     gl.glDeleteRenderbuffers(1, &renderbuffer);
     return done;
@@ -167,9 +203,10 @@ Framebuffer queryFramebuffer(const ContextResources& resources)
     return result;
 }
 
-GLenum findBlitFormat(osg::GLExtensions& gl, const Framebuffer& framebuffer, GLbitfield what)
+GLenum findBlitFormat(osg::GLExtensions& gl, const ContextResources& resources,
+                      const Framebuffer& framebuffer, GLbitfield what)
 {
-    for (GLenum format : candidates(framebuffer, what))
+    for (GLenum format : candidates(gl, resources, framebuffer, what))
         if (canBlit(gl, framebuffer, format, what)) return format;
     return GL_NONE;
 }

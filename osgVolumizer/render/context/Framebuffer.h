@@ -29,7 +29,8 @@ Framebuffer queryFramebuffer(const ContextResources& resources);
 /// the very same format, and does not tell that of a window, so formats are tried. GL_NONE where
 /// none fits. Leaves bindings as they were.
 /// \param what GL_DEPTH_BUFFER_BIT, GL_STENCIL_BUFFER_BIT or both
-GLenum findBlitFormat(osg::GLExtensions& gl, const Framebuffer& framebuffer, GLbitfield what);
+GLenum findBlitFormat(osg::GLExtensions& gl, const ContextResources& resources,
+                      const Framebuffer& framebuffer, GLbitfield what);
 
 /// Whether a depth format has stencil values too.
 bool hasStencil(GLenum depthFormat);

@@ -84,7 +84,10 @@ void registerVolume(std::unique_ptr<VolumeInstance> volume, osgUtil::CullVisitor
 TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visitor)
 {
     const VolumeAppearance& appearance = *volume.appearance;
-    const TableChoice choice = chooseTable(appearance, *volume.prepared);
+    const TableChoice choice =
+        chooseTable(appearance, *volume.prepared,
+                    visitor.getState() ? precisionOf(*visitor.getState()) : Precision());
+    volume.exactFiltering = choice.exactFiltering;
     if (choice.periodVoxel) volume.sampling.periodVoxel = glm::dvec3(*choice.periodVoxel);
     if (appearance.getTargetFrameTime() > 0.0 && visitor.getFrameStamp()) {
         const double now = osg::Timer::instance()->time_s();

@@ -27,7 +27,8 @@ bool isFine(double periodVoxel)
 
 } // namespace
 
-TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
+TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                        const Precision& ofTextures)
 {
     const osg::ref_ptr<AppearanceData> data = renderData<AppearanceData>(appearance);
     const osg::Vec2d range = appearance.getVoxels()->getRange();
@@ -37,7 +38,8 @@ TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeomet
     };
     const VolumeAppearance::Lookup lookup = usedLookup(appearance, prepared);
     if (!keepsTolerance(appearance, prepared))
-        return {tableOf(lookup, std::min({period.x(), period.y(), period.z()})), std::nullopt};
+        return {tableOf(lookup, std::min({period.x(), period.y(), period.z()})), std::nullopt,
+                false};
     SamplingQuestion question;
     question.tolerance = appearance.getErrorTolerance();
     if (lookup != VolumeAppearance::PREINTEGRATED)
@@ -49,8 +51,11 @@ TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeomet
     question.box = prepared.regionBox;
     question.nearest = appearance.getInterpolation() == VolumeAppearance::NEAREST;
     const core::PeriodChoice choice = data->choices.get(*appearance.getVoxels(), question);
-    if (choice.integrals) return {question.integrals, choice.periodVoxel};
-    return {tableOf(VolumeAppearance::AFTER_INTERPOLATION, choice.periodVoxel), choice.periodVoxel};
+    const bool exact =
+        !question.nearest && !choice.permits(ofTextures.filterWeight, question.tolerance);
+    if (choice.integrals) return {question.integrals, choice.periodVoxel, exact};
+    return {tableOf(VolumeAppearance::AFTER_INTERPOLATION, choice.periodVoxel), choice.periodVoxel,
+            exact};
 }
 
 } // namespace render

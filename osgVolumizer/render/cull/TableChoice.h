@@ -1,5 +1,6 @@
 #pragma once
 
+#include "../context/Precision.h"
 #include "../textures/TableTextures.h"
 #include "../volume/PreparedGeometry.h"
 
@@ -12,10 +13,12 @@ struct TableChoice
     TableTexture table;
     /// For an error tolerance; none where none is asked for, or it cannot be kept.
     std::optional<double> periodVoxel;
+    bool exactFiltering = false; ///< filtering as precise as that of textures would not keep it
 };
 
 /// Expects voxels. Reports why an error tolerance cannot be kept.
-TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared);
+TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                        const Precision& ofTextures);
 
 } // namespace render
 } // namespace osgVolumizer

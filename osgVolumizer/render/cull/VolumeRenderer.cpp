@@ -36,8 +36,10 @@ public:
             settings.reasons.emplace_back("the volume is empty; nothing is drawn");
             return settings;
         }
-        const bool integrals = voxels && chooseTable(appearance, *prepared).table.integrals;
-        return render::settingsInForce(appearance, *prepared, integrals);
+        const TableChoice choice =
+            voxels ? chooseTable(appearance, *prepared, leastPrecision()) : TableChoice();
+        return render::settingsInForce(appearance, *prepared, choice.table.integrals,
+                                       choice.exactFiltering);
     }
 };
 

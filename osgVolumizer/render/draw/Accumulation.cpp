@@ -102,7 +102,8 @@ GLenum Accumulation::depthFormat(osg::State& state, AccumulationBuffers& buffers
     const GLbitfield what = depth | (_stencilUsed ? GL_STENCIL_BUFFER_BIT : 0u);
     const auto known = buffers.blitFormats.emplace(blitKey(_framebuffer, what), GLenum(GL_NONE));
     if (known.second)
-        known.first->second = findBlitFormat(*state.get<osg::GLExtensions>(), _framebuffer, what);
+        known.first->second = findBlitFormat(*state.get<osg::GLExtensions>(),
+                                             *contextResources(state), _framebuffer, what);
     return known.first->second;
 }
 

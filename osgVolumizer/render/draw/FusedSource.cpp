@@ -75,8 +75,9 @@ std::string forEach(const std::string& code, const std::vector<Names>& members)
 
 const std::vector<std::string>& volumeShaders()
 {
-    static const std::vector<std::string> files = {"voxels.glsl",  "transfer.glsl", "ray.glsl",
-                                                   "shading.glsl", "skipping.glsl", "region.glsl"};
+    static const std::vector<std::string> files = {
+        "filtering.glsl", "voxels.glsl",   "transfer.glsl", "ray.glsl",
+        "shading.glsl",   "skipping.glsl", "region.glsl"};
     return files;
 }
 

@@ -54,6 +54,7 @@ std::uint64_t ProgramFeatures::key() const
     std::uint64_t result = static_cast<std::uint64_t>(planeCount);
     result = result << 3 | static_cast<std::uint64_t>(slotCount / 4);
     result = result << 3 | static_cast<std::uint64_t>(paintCount);
+    result = result << 4 | static_cast<std::uint64_t>(filterBits);
     result = result << 8 | static_cast<std::uint64_t>(rayFunction);
     for (const Flag& flag : FLAGS)
         result = result << 1 | std::uint64_t(this->*flag.member);
@@ -71,6 +72,7 @@ std::string ProgramFeatures::defines() const
     define(exact || nearest || cubic || before, "FETCH");
     define(paintCount > 0, "PAINTED");
     define(slotCount > 0, "SLOTS " + std::to_string(slotCount));
+    define(filterBits > 0, "FILTER_BITS " + std::to_string(filterBits));
     define(true, "PLANES " + std::to_string(planeCount));
     return text;
 }

@@ -44,6 +44,7 @@ struct ProgramFeatures : ProgramFlags
     int slotCount = 0;
     int paintCount = 0; ///< bricks of volumes that paint this one; no more than 4
     int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
+    int filterBits = 0; ///< see ContextLimits; less than 16
 
     /// Whether surfaces are sorted before the volume, whose shader reads them.
     bool needsSortedSurfaces() const { return ranked || slotCount > 0; }

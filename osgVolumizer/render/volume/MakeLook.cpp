@@ -1,5 +1,6 @@
 #include "MakeLook.h"
 
+#include "../context/ContextLimits.h"
 #include "../context/Matrices.h"
 #include "SettingsInForce.h"
 
@@ -96,13 +97,15 @@ glm::dmat3 frameToUnits(const glm::dmat3& frameToObject, double unit)
 }
 
 // How the shader gets a colour out of a brick.
-void setInterpolation(const VolumeAppearance& appearance, const TableTexture& table,
+void setInterpolation(const VolumeInstance& volume, const TableTexture& table,
                       double voxelsPerSample, ProgramFeatures& features, Reasons& reasons)
 {
+    const VolumeAppearance& appearance = *volume.appearance;
     const auto interpolation = usedInterpolation(appearance, reasons);
     features.nearest = interpolation == VolumeAppearance::NEAREST;
     features.cubic = interpolation == VolumeAppearance::CUBIC;
-    features.exact = interpolation == VolumeAppearance::LINEAR && appearance.getExactFiltering();
+    features.exact = interpolation == VolumeAppearance::LINEAR &&
+                     (appearance.getExactFiltering() || volume.exactFiltering);
     features.before = looksUpBefore(appearance, features.rayFunction, interpolation);
     features.preIntegrated = table.integrals;
     features.shortRuns = table.integrals && table.shortRuns;
@@ -163,8 +166,8 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     look->maximumSteps = volume.sampling.maximumSamples + 2;
     const glm::dvec3 alongView = glm::inverse(glm::dmat3(toEye)) * glm::dvec3(0.0, 0.0, -1.0);
     look->voxelsPerSample = look->step * glm::length(alongView / volume.sampling.voxelSize);
-    if (features.voxels)
-        setInterpolation(appearance, table, look->voxelsPerSample, features, reasons);
+    if (visitor.getState()) features.filterBits = filterBitsOf(*visitor.getState());
+    if (features.voxels) setInterpolation(volume, table, look->voxelsPerSample, features, reasons);
     reportReasons(appearance, reasons);
     if (features.slab) {
         look->regionMin = glm::vec3(prepared.regionBox.min);

@@ -72,7 +72,7 @@ void explainPaint(const VolumeAppearance& appearance, VolumeAppearance::Settings
         settings.lookup = VolumeAppearance::AFTER_INTERPOLATION;
         settings.reasons.push_back("a volume that paints is looked up after interpolation");
     }
-    settings.shading = false;
+    settings.shading = settings.exactFiltering = false;
 }
 
 } // namespace
@@ -171,7 +171,8 @@ bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry
 }
 
 VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
-                                           const PreparedGeometry& prepared, bool integrals)
+                                           const PreparedGeometry& prepared, bool integrals,
+                                           bool exactFiltering)
 {
     VolumeAppearance::Settings settings;
     Reasons& reasons = settings.reasons;
@@ -182,6 +183,11 @@ VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
     if (!appearance.getVoxels()) return settings;
     explainLookup(appearance, prepared, integrals, settings);
     if (appearance.getErrorTolerance() > 0.0) (void)canKeepTolerance(appearance, prepared, reasons);
+    settings.exactFiltering = settings.interpolation == VolumeAppearance::LINEAR &&
+                              (appearance.getExactFiltering() || exactFiltering);
+    if (settings.exactFiltering && !appearance.getExactFiltering())
+        reasons.push_back("texture units may filter too coarsely for the error tolerance; "
+                          "filtering is exact");
     explainPaint(appearance, settings);
     return settings;
 }

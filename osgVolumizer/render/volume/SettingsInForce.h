@@ -37,8 +37,10 @@ bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry
                       Reasons& reasons);
 
 /// All of them together. `integrals`: whether the table that is used holds them.
+/// `exactFiltering`: whether an error tolerance needs that.
 VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
-                                           const PreparedGeometry& prepared, bool integrals);
+                                           const PreparedGeometry& prepared, bool integrals,
+                                           bool exactFiltering);
 
 /// Reports each reason once in the life of the process.
 void reportReasons(const VolumeAppearance& appearance, const Reasons& reasons);

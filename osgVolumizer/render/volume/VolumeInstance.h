@@ -34,8 +34,9 @@ struct VolumeInstance
     std::int64_t emptyBricks = 0, homogeneousBricks = 0, cellCount = 0, occupiedCells = 0;
     double cellSize = 8.0; ///< voxels
     core::SamplingParameters sampling;
-    double rayDistance = 1.0; ///< pixels between rays, where all of the volume is drawn at once
-    std::uint64_t viewId = 0; ///< see viewIdOf()
+    bool exactFiltering = false; ///< for an error tolerance, whatever the appearance says
+    double rayDistance = 1.0;    ///< pixels between rays, where all of the volume is drawn at once
+    std::uint64_t viewId = 0;    ///< see viewIdOf()
 
     // Known once sorting begins:
     std::shared_ptr<const std::vector<EyeLight>> lights; ///< null where unlit

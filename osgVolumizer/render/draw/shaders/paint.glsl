@@ -29,7 +29,8 @@ vec3 paint@At(vec3 point)
     for (int i = 0; i < 8; ++i)
         if (dot(paint@Planes[i], vec4(p, 1.0)) < 0.0) return vec3(1.0);
     if (paint@Nearest) p = floor(p + 0.5);
-    vec4 c = texture(paint@Voxels, p * paint@TextureScale + paint@TextureOffset);
+    vec3 place = p * paint@TextureScale + paint@TextureOffset;
+    vec4 c = texture(paint@Voxels, filterPlace(place, textureSize(paint@Voxels, 0)));
     if (!paint@Rgba) {
         float entry =
             clamp(c.r * paint@ValueToEntry.x + paint@ValueToEntry.y, 0.0, paint@LastEntry);

@@ -21,6 +21,7 @@ vec3 gradientAt(vec3 place)
 #ifdef FETCH
     place = (place + 0.5) / vec3(textureSize(voxels, 0));
 #endif
+    place = filterPlace(place, textureSize(voxels, 0));
     return textureLod(voxels, place, 0.0).rgb * gradientDecode.x + gradientDecode.y;
 }
 #else

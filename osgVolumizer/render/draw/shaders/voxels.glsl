@@ -89,7 +89,7 @@ TEXEL voxelAt(vec3 place)
     TEXEL x11 = mix(texelAt(cell + ivec3(0, 1, 1)), texelAt(cell + ivec3(1, 1, 1)), f.x);
     return mix(mix(x00, x10, f.y), mix(x01, x11, f.y), f.z);
 #else
-    return CHANNELS(texture(voxels, place));
+    return CHANNELS(texture(voxels, filterPlace(place, textureSize(voxels, 0))));
 #endif
 }
 #endif
