@@ -273,6 +273,17 @@ TEST_F(Fused, SurfacesInSeveralVolumes)
     EXPECT_GE(support::convergenceOrder(periods, errors), 1.9);
 }
 
+// Surfaces that reach beyond the volumes show there too.
+TEST_F(Fused, SurfacesReachBeyondTheVolumes)
+{
+    MixedScene scene = several(2);
+    scene.addQuad({glm::vec3(-20, 16, -20), {60, 16, -20}, {60, 16, 60}, {-20, 16, 60}},
+                  {0.9, 0.1, 0.2, 0.4});
+    const Judged j = judge(scene, _options);
+    save(j, "fused_beyond");
+    EXPECT_LE(j.away.maximum, 4e-3);
+}
+
 // So are those in a volume whose bricks cannot share a texture: the same samples as in one brick.
 TEST_F(Fused, SurfacesInBricksThatShareNoTexture)
 {

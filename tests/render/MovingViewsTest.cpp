@@ -96,6 +96,26 @@ TEST_F(MovingViews, LookAlikeAndAreExactAtRest)
     }
 }
 
+// Volumes that overlap are one march, which has fewer rays too.
+TEST_F(MovingViews, VolumesThatOverlap)
+{
+    _scene.addVolume(makeBlob(glm::ivec3(SIZE), 5.0), smoothPoints(0.2),
+                     osg::Matrixd::translate(6, -5, 4));
+    const RenderOptions options = viewAt(30.0, 127, 61);
+    const FloatImage exact = support::renderScene(_scene.root(), options);
+    for (const auto& volume : _scene.volumes())
+        ASSERT_TRUE(volume->setTargetFrameTime(0.05));
+    support::SceneRenderer renderer(_scene.root(), options);
+    const FloatImage moved = moving(renderer, 16.0);
+    support::savePicture(moved, "moving_overlap");
+    const support::Difference difference = support::compare(moved, exact);
+    EXPECT_GT(difference.maximum, 1e-3); // that is, samples were saved
+    EXPECT_LT(difference.rmse, 0.006);
+    EXPECT_EQ(renderer.glError(), 0u);
+    renderer.render();
+    EXPECT_EQ(support::compare(renderer.render(), exact).maximum, 0.0);
+}
+
 TEST_F(MovingViews, KeepTheEdgesOfOpaqueGeometry)
 {
     // In front of the volume, steel stays what it is, up to its outline; behind and in it, nothing

@@ -45,6 +45,30 @@ private:
     std::map<const osg::TextureBuffer*, unsigned> _tables;
 };
 
+// Puts an attribute back: the next leaf may share our state set, and then finds nothing to apply.
+class AttributeScope
+{
+public:
+    AttributeScope(osg::State& state, osg::StateAttribute::Type type)
+        : _state(state), _type(type), _before(state.getLastAppliedAttribute(type))
+    {
+    }
+    AttributeScope(const AttributeScope&) = delete;
+    AttributeScope& operator=(const AttributeScope&) = delete;
+    ~AttributeScope()
+    {
+        if (_before)
+            _state.applyAttribute(_before);
+        else
+            _state.haveAppliedAttribute(_type);
+    }
+
+private:
+    osg::State& _state;
+    const osg::StateAttribute::Type _type;
+    const osg::StateAttribute* const _before;
+};
+
 Result<PixelRays> raysOf(const FusedDrawing& drawing, const FusedMember& member)
 {
     const FusedVolumes& volumes = *drawing.part.fused;
@@ -113,7 +137,9 @@ bool setMembers(const FusedDrawing& drawing, const osg::Program::PerContextProgr
     for (std::size_t i = 0; i < members.size(); ++i) {
         const Uniforms uniforms(gl, program, memberSuffix(i));
         if (!setMarched(drawing, members[i], uniforms, units)) return false;
-        mostSteps += members[i].part->look->maximumSteps;
+        // What it is cut into, and its paints cut besides.
+        mostSteps +=
+            members[i].part->look->maximumSteps + 2 * (members[i].part->features.paintCount + 1);
     }
     for (unsigned unit = FIRST_MEMBER_UNIT; unit < units.taken(); ++unit)
         drawing.renderInfo.getState()->haveAppliedTextureAttribute(unit,
@@ -125,6 +151,8 @@ bool setMembers(const FusedDrawing& drawing, const osg::Program::PerContextProgr
 void drawMembersApart(const FusedDrawing& drawing, const BrickBatch& triangles)
 {
     osg::State& state = *drawing.renderInfo.getState();
+    const AttributeScope programScope(state, osg::StateAttribute::PROGRAM);
+    const AttributeScope blendScope(state, osg::StateAttribute::BLENDFUNC);
     for (const FusedMember& member : drawing.part.fused->members) {
         const auto set = volumeStateSet(member.part->features);
         state.applyAttribute(set->getAttribute(osg::StateAttribute::PROGRAM));
@@ -134,12 +162,7 @@ void drawMembersApart(const FusedDrawing& drawing, const BrickBatch& triangles)
         const Uniforms uniforms(*state.get<osg::GLExtensions>(), *program);
         const glm::dmat4 inDevice(1.0);
         uniforms.set("frameToClip", inDevice);
-        const std::pair<const char*, unsigned> samplers[] = {{"voxels", UNIT_VOXELS},
-                                                             {"lookupTable", UNIT_TABLE},
-                                                             {"opaqueDepth", UNIT_OPAQUE_DEPTH},
-                                                             {"cells", UNIT_CELLS}};
-        for (const auto& sampler : samplers)
-            uniforms.set(sampler.first, static_cast<int>(sampler.second));
+        setSamplers(uniforms);
         if (!setMember(drawing, member, uniforms, UNIT_TABLE, UNIT_FIRST_PAINT)) continue;
         const core::View view{member.frameToEye, drawing.projection};
         BrickBatch batch = member.batch;
@@ -147,8 +170,6 @@ void drawMembersApart(const FusedDrawing& drawing, const BrickBatch& triangles)
         batch.indexCount = triangles.indexCount;
         drawBatch(batchDrawing(drawing, member, uniforms, view), batch);
     }
-    state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
-    state.haveAppliedAttribute(osg::StateAttribute::BLENDFUNC);
 }
 
 } // namespace render

@@ -166,6 +166,7 @@ void VolumeDrawable::drawMarched(osg::RenderInfo& renderInfo,
     // Meshes of a triangle over all pixels are in device coordinates.
     const bool inDevice = _part->features.slotCount > 0 || _part->fused;
     uniforms.set("frameToClip", inDevice ? glm::dmat4(1.0) : view.projection * view.toEye);
+    setSamplers(uniforms);
     setUniforms(state, uniforms, *_part, rays, view.toEye, resources->part<AccumulationBuffers>());
     if (look.table.texture && !applyTable(state, look.table.texture.get(), UNIT_TABLE)) return;
     if (_part->paints)

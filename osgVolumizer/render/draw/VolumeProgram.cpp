@@ -1,6 +1,5 @@
 #include "VolumeProgram.h"
 
-#include "../context/ProgramInterface.h"
 #include "../context/ShaderSource.h"
 #include "../context/SharedStateSets.h"
 #include "../context/Uniforms.h"
@@ -112,15 +111,6 @@ osg::ref_ptr<osg::StateSet> makeStateSet(const ProgramFeatures& features,
     // plane.
     if (features.slab) set->setMode(GL_DEPTH_CLAMP, KEPT);
     keepFacesWhole(*set);
-    set->addUniform(new osg::Uniform(uniformName("voxels").c_str(), int(UNIT_VOXELS)));
-    set->addUniform(new osg::Uniform(uniformName("lookupTable").c_str(), int(UNIT_TABLE)));
-    set->addUniform(new osg::Uniform(uniformName("opaqueDepth").c_str(), int(UNIT_OPAQUE_DEPTH)));
-    set->addUniform(new osg::Uniform(uniformName("splitDepth").c_str(), int(UNIT_SPLIT_DEPTH)));
-    set->addUniform(new osg::Uniform(uniformName("sortedSlots").c_str(), int(UNIT_SORTED_FAR)));
-    set->addUniform(new osg::Uniform(uniformName("slotColors").c_str(), int(UNIT_SORTED_NEAR)));
-    set->addUniform(new osg::Uniform(uniformName("sortedFar").c_str(), int(UNIT_SORTED_FAR)));
-    set->addUniform(new osg::Uniform(uniformName("sortedNear").c_str(), int(UNIT_SORTED_NEAR)));
-    set->addUniform(new osg::Uniform(uniformName("cells").c_str(), int(UNIT_CELLS)));
     set->setRenderBinDetails(10, "DepthSortedBin");
     return set;
 }

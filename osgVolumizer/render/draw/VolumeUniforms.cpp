@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include <cmath>
+#include <utility>
 
 namespace osgVolumizer {
 namespace render {
@@ -110,6 +111,21 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
 }
 
 } // namespace
+
+void setSamplers(const Uniforms& uniforms)
+{
+    static constexpr std::pair<const char*, unsigned> UNITS[] = {{"voxels", UNIT_VOXELS},
+                                                                 {"lookupTable", UNIT_TABLE},
+                                                                 {"opaqueDepth", UNIT_OPAQUE_DEPTH},
+                                                                 {"splitDepth", UNIT_SPLIT_DEPTH},
+                                                                 {"sortedSlots", UNIT_SORTED_FAR},
+                                                                 {"slotColors", UNIT_SORTED_NEAR},
+                                                                 {"sortedFar", UNIT_SORTED_FAR},
+                                                                 {"sortedNear", UNIT_SORTED_NEAR},
+                                                                 {"cells", UNIT_CELLS}};
+    for (const auto& unit : UNITS)
+        uniforms.set(unit.first, static_cast<int>(unit.second));
+}
 
 void setUniforms(osg::State& state, const Uniforms& uniforms, const VolumePart& part,
                  const PixelRays& rays, const glm::dmat4& frameToEye,

@@ -10,6 +10,9 @@
 namespace osgVolumizer {
 namespace render {
 
+/// Tells the program in force which texture units its samplers are.
+void setSamplers(const Uniforms& uniforms);
+
 /// Gives the program in force all that it needs of a part but its voxels, table and paints: values,
 /// lights and the depths that segments end at. Call in the draw thread.
 void setUniforms(osg::State& state, const Uniforms& uniforms, const VolumePart& part,

@@ -38,7 +38,10 @@ bool canBeFused(const MergedVolume& volume)
 bool alike(const VolumeInstance& a, const VolumeInstance& b)
 {
     const bool bothLit = a.look->features.shading && b.look->features.shading;
-    return *a.leaf->_projection == *b.leaf->_projection &&
+    const auto viewportOf = [](const VolumeInstance& volume) {
+        return effectiveAttribute(volume.leaf->_parent, osg::StateAttribute::VIEWPORT);
+    };
+    return viewportOf(a) == viewportOf(b) && *a.leaf->_projection == *b.leaf->_projection &&
            (!bothLit || lightsOn(a) == lightsOn(b)) && a.countSamples == b.countSamples;
 }
 

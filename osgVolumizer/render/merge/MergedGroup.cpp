@@ -81,7 +81,7 @@ bool MergedGroup::prepare(VolumeInstance& instance, bool mergeable, MergedVolume
     const Status status = volume.sliced->polygonize(instance, volume.view, mergeable);
     if (volume.sliced->polygonized()) ++_frame.counts.polygonizations;
     reportError(status);
-    volume.step = volume.sliced->spacing();
+    if (status.ok()) volume.step = volume.sliced->spacing();
     return status.ok();
 }
 

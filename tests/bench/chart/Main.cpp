@@ -146,8 +146,8 @@ void profile(const Arguments& a, const std::vector<ChartScene>& scenes)
 {
     for (const ChartScene& scene : scenes)
         for (const RendererPtr& renderer : makeRenderers(a.renderers)) {
-            const Status status = renderer->open(scene);
-            if (status.ok()) renderer->setStep(a.measure.steps.front());
+            Status status = renderer->open(scene);
+            if (status.ok()) status = renderer->setStep(a.measure.steps.front());
             std::printf("%s, %s, step %g: %s\n", scene.name.c_str(), renderer->name().c_str(),
                         a.measure.steps.front(), status.text.c_str());
             if (!status.ok()) continue;
