@@ -5,6 +5,7 @@
 #include "ProgramInterface.h"
 
 #include <osg/BufferObject>
+#include <osg/ContextData>
 #include <osg/Image>
 
 #include <glm/common.hpp>
@@ -49,6 +50,9 @@ bool allocate(const osg::State& state, const AllocationRequest& request,
 {
     const ContextHooks* hooks = ContextHooks::of(state);
     if (hooks && hooks->refuses && hooks->refuses(request)) return false;
+    // OSG gives a new texture the object of a deleted one that it has not got round to delete,
+    // whose storage may be immutable: then GL refuses to make it again.
+    osg::get<osg::TextureObjectManager>(state.getContextID())->flushAllDeletedGLObjects();
     discardErrors();
     make();
     const bool made = glGetError() == GL_NO_ERROR;

@@ -101,7 +101,9 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
         volume.rayDistance = reduced.rayDistance;
         volume.sampling.periodVoxel *= reduced.stretch;
     }
-    return choice.table;
+    // What the nearest entry is off by counts for the more, the more samples there are.
+    const bool fine = !choice.table.integrals && voxelsPerSample(volume, visitor) < 0.999;
+    return fine ? fineTable(appearance) : choice.table;
 }
 
 // All that is known before bricks are selected; null where there is nothing to draw.

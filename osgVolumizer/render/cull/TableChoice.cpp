@@ -3,8 +3,6 @@
 #include "../volume/SettingsInForce.h"
 #include "AppearanceData.h"
 
-#include <algorithm>
-
 namespace osgVolumizer {
 namespace render {
 
@@ -19,12 +17,6 @@ bool keepsTolerance(const VolumeAppearance& appearance, const PreparedGeometry& 
     return kept;
 }
 
-// What the nearest entry is off by counts for the less, the fewer samples there are.
-bool isFine(double periodVoxel)
-{
-    return periodVoxel < 0.999;
-}
-
 } // namespace
 
 TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
@@ -32,30 +24,31 @@ TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeomet
 {
     const osg::ref_ptr<AppearanceData> data = renderData<AppearanceData>(appearance);
     const osg::Vec2d range = appearance.getVoxels()->getRange();
-    const osg::Vec3d period = appearance.getSamplingPeriod();
-    const auto tableOf = [&](VolumeAppearance::Lookup lookup, double periodVoxel) {
-        return data->tables.get(*appearance.getLookupTable(), range, lookup, isFine(periodVoxel));
+    const auto tableOf = [&](VolumeAppearance::Lookup lookup) {
+        return data->tables.get(*appearance.getLookupTable(), range, lookup);
     };
     const VolumeAppearance::Lookup lookup = usedLookup(appearance, prepared);
-    if (!keepsTolerance(appearance, prepared))
-        return {tableOf(lookup, std::min({period.x(), period.y(), period.z()})), std::nullopt,
-                false};
+    if (!keepsTolerance(appearance, prepared)) return {tableOf(lookup), std::nullopt, false};
     SamplingQuestion question;
     question.tolerance = appearance.getErrorTolerance();
     if (lookup != VolumeAppearance::PREINTEGRATED)
-        question.midpoints = tableOf(VolumeAppearance::AFTER_INTERPOLATION, 1.0);
+        question.midpoints = tableOf(VolumeAppearance::AFTER_INTERPOLATION);
     if (lookup != VolumeAppearance::AFTER_INTERPOLATION)
-        question.integrals = tableOf(VolumeAppearance::PREINTEGRATED, 1.0);
+        question.integrals = tableOf(VolumeAppearance::PREINTEGRATED);
     question.frameToUnits =
         glm::dmat3(prepared.frameToObject) / appearance.getEffectiveOpacityUnit();
     question.box = prepared.regionBox;
     question.nearest = appearance.getInterpolation() == VolumeAppearance::NEAREST;
     const core::PeriodChoice choice = data->choices.get(*appearance.getVoxels(), question);
-    const bool exact =
-        !question.nearest && !choice.permits(ofTextures.filterWeight, question.tolerance);
-    if (choice.integrals) return {question.integrals, choice.periodVoxel, exact};
-    return {tableOf(VolumeAppearance::AFTER_INTERPOLATION, choice.periodVoxel), choice.periodVoxel,
-            exact};
+    return {choice.integrals ? question.integrals : question.midpoints, choice.periodVoxel,
+            !question.nearest && !choice.permits(ofTextures.filterWeight, question.tolerance)};
+}
+
+TableTexture fineTable(const VolumeAppearance& appearance)
+{
+    return renderData<AppearanceData>(appearance)
+        ->tables.get(*appearance.getLookupTable(), appearance.getVoxels()->getRange(),
+                     VolumeAppearance::AFTER_INTERPOLATION, true);
 }
 
 } // namespace render

@@ -25,10 +25,10 @@ namespace {
 constexpr double BITS = 1.0 / 0.6931471805599453; // of extinction, in units of -ln(transmittance)
 
 // As few as stay in a cache; so many that the nearest one hardly differs.
-constexpr int FEWEST_ENTRIES = 1024, ENTRIES = 16384, MOST_ENTRIES = 65536;
+constexpr int FEWEST_ENTRIES = 1024, ENTRIES = 16384, FINE_ENTRIES = 65536;
 // What emission and extinction may differ by from entry to entry, bits per opacity unit: rays of a
-// hundred samples are then off by some 1e-6. Fine tables are for as many more samples.
-constexpr double ENTRY_STEP = 4e-6, FINE_ENTRY_STEP = 1e-6;
+// hundred samples are then off by some 1e-6.
+constexpr double ENTRY_STEP = 4e-6;
 
 // Bits times entries: differences of floats that are not larger are good to 1e-4 bits.
 constexpr float LARGEST_INTEGRAL = 8192.0f;
@@ -49,7 +49,7 @@ bool needsPreIntegration(const core::TransferFunction& function, const std::stri
 }
 
 // How many entries a function needs where the nearest one is taken.
-int entriesFor(const core::TransferFunction& function, bool fine)
+int entriesFor(const core::TransferFunction& function)
 {
     const std::vector<glm::vec4> texels =
         function.tabulateExtinction(FEWEST_ENTRIES, 0.0, 1.0, false);
@@ -59,9 +59,9 @@ int entriesFor(const core::TransferFunction& function, bool fine)
         const glm::dvec3 emission = glm::abs(glm::dvec3(b) * b.a - glm::dvec3(a) * a.a);
         steepest = std::max({steepest, std::abs(b.a - a.a), emission.x, emission.y, emission.z});
     }
-    const double needed = steepest * BITS * FEWEST_ENTRIES / (fine ? FINE_ENTRY_STEP : ENTRY_STEP);
+    const double needed = steepest * BITS * FEWEST_ENTRIES / ENTRY_STEP;
     int entries = FEWEST_ENTRIES;
-    while (entries < needed && entries < (fine ? MOST_ENTRIES : ENTRIES))
+    while (entries < needed && entries < ENTRIES)
         entries *= 2;
     return entries;
 }
@@ -104,7 +104,7 @@ std::shared_ptr<const TableTexture> makeTable(const LookupTable& table, const os
     result.integrals = lookup == VolumeAppearance::PREINTEGRATED ||
                        (lookup == VolumeAppearance::AUTOMATIC_LOOKUP &&
                         needsPreIntegration(*result.function, table.getName()));
-    result.count = result.integrals ? ENTRIES : entriesFor(*result.function, fine);
+    result.count = result.integrals ? ENTRIES : fine ? FINE_ENTRIES : entriesFor(*result.function);
     std::vector<glm::vec4> texels =
         result.function->tabulateExtinction(result.count, 0.0, 1.0, false);
     for (glm::vec4& t : texels)

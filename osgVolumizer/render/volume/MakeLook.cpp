@@ -69,6 +69,13 @@ double sampleDepth(const glm::dmat4& toEye, const core::Box3d& bounds,
                     (farthest - nearest) / sampling.maximumSamples);
 }
 
+// Along the view axis.
+double voxelsPerDepth(const glm::dmat4& toEye, const core::SamplingParameters& sampling)
+{
+    const glm::dvec3 alongView = glm::inverse(glm::dmat3(toEye)) * glm::dvec3(0.0, 0.0, -1.0);
+    return glm::length(alongView / sampling.voxelSize);
+}
+
 // See VolumeLook::pixelMargin.
 glm::dvec3 pixelMargin(const glm::dmat4& toEye, const core::Box3d& bounds,
                        osgUtil::CullVisitor& visitor)
@@ -111,7 +118,7 @@ void setInterpolation(const VolumeInstance& volume, const TableTexture& table,
     features.shortRuns = table.integrals && table.shortRuns;
     // Elsewhere tables are so fine that what the nearest entry is off by does not count.
     features.smoothTable =
-        !table.integrals && (appearance.getExactFiltering() || voxelsPerSample < 0.2);
+        !table.integrals && (appearance.getExactFiltering() || voxelsPerSample < 0.4);
 }
 
 void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
@@ -145,6 +152,13 @@ void setValues(const VolumeAppearance& appearance, const Voxels& voxels, VolumeL
 
 } // namespace
 
+double voxelsPerSample(const VolumeInstance& volume, osgUtil::CullVisitor& visitor)
+{
+    const glm::dmat4 toEye = toGlm(*volume.frameToEye);
+    return voxelsPerDepth(toEye, volume.sampling) *
+           sampleDepth(toEye, volume.prepared->regionBox, volume.sampling, visitor);
+}
+
 std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table,
                                            osgUtil::CullVisitor& visitor)
 {
@@ -164,8 +178,7 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;
     look->step = sampleDepth(toEye, prepared.regionBox, volume.sampling, visitor);
     look->maximumSteps = volume.sampling.maximumSamples + 2;
-    const glm::dvec3 alongView = glm::inverse(glm::dmat3(toEye)) * glm::dvec3(0.0, 0.0, -1.0);
-    look->voxelsPerSample = look->step * glm::length(alongView / volume.sampling.voxelSize);
+    look->voxelsPerSample = voxelsPerDepth(toEye, volume.sampling) * look->step;
     if (visitor.getState()) features.filterBits = filterBitsOf(*visitor.getState());
     if (features.voxels) setInterpolation(volume, table, look->voxelsPerSample, features, reasons);
     reportReasons(appearance, reasons);
