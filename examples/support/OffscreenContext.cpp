@@ -95,7 +95,8 @@ OffscreenContext::create(Profile profile, const OffscreenContext* shared, std::o
     const EGLContext context =
         eglCreateContext((*display)->handle(), (*display)->config(),
                          shared ? shared->_context : EGL_NO_CONTEXT, attributes.data());
-    if (context == EGL_NO_CONTEXT) return noContext("eglCreateContext fails with error " + std::to_string(eglGetError()));
+    if (context == EGL_NO_CONTEXT)
+        return noContext("eglCreateContext fails with error " + std::to_string(eglGetError()));
     return std::unique_ptr<OffscreenContext>(new OffscreenContext(**display, context));
 }
 
