@@ -5,6 +5,7 @@
 #include <oracles/ClosedForms.h>
 #include <oracles/Ray.h>
 #include <support/GLTest.h>
+#include <support/Precision.h>
 
 #include <cmath>
 
@@ -47,9 +48,7 @@ protected:
     FloatImage picture(TwinVolume& twin, double period) const
     {
         twin.node->setTechnique(GetParam().technique);
-        // For the order of sampling: at half a voxel tables are read at the nearest entry, which
-        // these fields, for which sampling is exact to 1e-6, would show.
-        twin.node->setExactFiltering(true);
+        support::filterExactly(*twin.node); // for the order of sampling
         twin.setPeriod(period);
         return support::renderScene(twin.node, viewOf(GetParam()));
     }

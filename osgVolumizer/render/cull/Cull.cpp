@@ -101,9 +101,7 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
         volume.rayDistance = reduced.rayDistance;
         volume.sampling.periodVoxel *= reduced.stretch;
     }
-    // What the nearest entry is off by counts for the more, the more samples there are.
-    const bool fine = !choice.table.integrals && voxelsPerSample(volume, visitor) < 0.999;
-    return fine ? fineTable(appearance) : choice.table;
+    return choice.table;
 }
 
 // All that is known before bricks are selected; null where there is nothing to draw.

@@ -44,12 +44,5 @@ TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeomet
             !question.nearest && !choice.permits(ofTextures.filterWeight, question.tolerance)};
 }
 
-TableTexture fineTable(const VolumeAppearance& appearance)
-{
-    return renderData<AppearanceData>(appearance)
-        ->tables.get(*appearance.getLookupTable(), appearance.getVoxels()->getRange(),
-                     VolumeAppearance::AFTER_INTERPOLATION, true);
-}
-
 } // namespace render
 } // namespace osgVolumizer

@@ -19,8 +19,6 @@ struct TableChoice
 /// Expects voxels. Reports why an error tolerance cannot be kept.
 TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
                         const Precision& ofTextures);
-/// The table without integrals for several samples a voxel. Expects voxels.
-TableTexture fineTable(const VolumeAppearance& appearance);
 
 } // namespace render
 } // namespace osgVolumizer

@@ -25,7 +25,7 @@ namespace {
 constexpr double BITS = 1.0 / 0.6931471805599453; // of extinction, in units of -ln(transmittance)
 
 // As few as stay in a cache; so many that the nearest one hardly differs.
-constexpr int FEWEST_ENTRIES = 1024, ENTRIES = 16384, FINE_ENTRIES = 65536;
+constexpr int FEWEST_ENTRIES = 1024, ENTRIES = 16384;
 // What emission and extinction may differ by from entry to entry, bits per opacity unit: rays of a
 // hundred samples are then off by some 1e-6.
 constexpr double ENTRY_STEP = 4e-6;
@@ -94,7 +94,7 @@ void countShown(const std::vector<glm::vec4>& texels, TableTexture& table)
 }
 
 std::shared_ptr<const TableTexture> makeTable(const LookupTable& table, const osg::Vec2d& range,
-                                              VolumeAppearance::Lookup lookup, bool fine)
+                                              VolumeAppearance::Lookup lookup)
 {
     static std::atomic<unsigned> nextId{1};
     auto made = std::make_shared<TableTexture>();
@@ -104,7 +104,7 @@ std::shared_ptr<const TableTexture> makeTable(const LookupTable& table, const os
     result.integrals = lookup == VolumeAppearance::PREINTEGRATED ||
                        (lookup == VolumeAppearance::AUTOMATIC_LOOKUP &&
                         needsPreIntegration(*result.function, table.getName()));
-    result.count = result.integrals ? ENTRIES : fine ? FINE_ENTRIES : entriesFor(*result.function);
+    result.count = result.integrals ? ENTRIES : entriesFor(*result.function);
     std::vector<glm::vec4> texels =
         result.function->tabulateExtinction(result.count, 0.0, 1.0, false);
     for (glm::vec4& t : texels)
@@ -132,11 +132,9 @@ struct TableKey
     unsigned modifiedCount;
     osg::Vec2d range;
     VolumeAppearance::Lookup lookup;
-    bool fine;
     bool operator==(const TableKey& o) const
     {
-        return modifiedCount == o.modifiedCount && range == o.range && lookup == o.lookup &&
-               fine == o.fine;
+        return modifiedCount == o.modifiedCount && range == o.range && lookup == o.lookup;
     }
 };
 
@@ -156,7 +154,7 @@ public:
         for (const auto& known : _tables)
             if (known.first == key) result = known.second.lock();
         if (result) return result;
-        result = makeTable(table, key.range, key.lookup, key.fine);
+        result = makeTable(table, key.range, key.lookup);
         _tables.emplace_front(key, result);
         return result;
     }
@@ -200,15 +198,15 @@ bool applyTable(osg::State& state, osg::TextureBuffer* texture, unsigned unit)
 }
 
 TableTexture TableTextures::get(const LookupTable& table, const osg::Vec2d& range,
-                                VolumeAppearance::Lookup lookup, bool fine)
+                                VolumeAppearance::Lookup lookup)
 {
     if (lookup == VolumeAppearance::BEFORE_INTERPOLATION)
         lookup = VolumeAppearance::AFTER_INTERPOLATION;
     const unsigned modified = table.getModifiedCount();
-    const Key key{&table, modified, range, lookup, fine};
+    const Key key{&table, modified, range, lookup};
     std::lock_guard<std::mutex> lock(_mutex);
     if (const auto* known = _tables.find(key)) return **known;
-    return *_tables.add(key, SharedTables::of(table)->get(table, {modified, range, lookup, fine}));
+    return *_tables.add(key, SharedTables::of(table)->get(table, {modified, range, lookup}));
 }
 
 void TableTextures::resizeGLObjectBuffers(unsigned int maximum)

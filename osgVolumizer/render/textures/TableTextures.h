@@ -45,10 +45,9 @@ bool applyTable(osg::State& state, osg::TextureBuffer* texture, unsigned unit);
 class TableTextures
 {
 public:
-    /// \param fine for several samples a voxel
     /// BEFORE_INTERPOLATION needs what AFTER_INTERPOLATION needs.
     TableTexture get(const LookupTable& table, const osg::Vec2d& range,
-                     VolumeAppearance::Lookup lookup, bool fine = false);
+                     VolumeAppearance::Lookup lookup);
     void resizeGLObjectBuffers(unsigned int maximum);
     void releaseGLObjects(osg::State* state) const;
 
@@ -59,11 +58,10 @@ private:
         unsigned modifiedCount;
         osg::Vec2d range;
         VolumeAppearance::Lookup lookup;
-        bool fine;
         bool operator==(const Key& o) const
         {
             return table == o.table && modifiedCount == o.modifiedCount && range == o.range &&
-                   lookup == o.lookup && fine == o.fine;
+                   lookup == o.lookup;
         }
     };
     static constexpr std::size_t CAPACITY = 3;

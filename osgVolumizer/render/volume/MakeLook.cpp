@@ -116,9 +116,9 @@ void setInterpolation(const VolumeInstance& volume, const TableTexture& table,
     features.before = looksUpBefore(appearance, features.rayFunction, interpolation);
     features.preIntegrated = table.integrals;
     features.shortRuns = table.integrals && table.shortRuns;
-    // Elsewhere tables are so fine that what the nearest entry is off by does not count.
+    // At a period of a voxel and more what the nearest entry is off by does not count.
     features.smoothTable =
-        !table.integrals && (appearance.getExactFiltering() || voxelsPerSample < 0.4);
+        !table.integrals && (appearance.getExactFiltering() || voxelsPerSample < 0.999);
 }
 
 void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
@@ -151,13 +151,6 @@ void setValues(const VolumeAppearance& appearance, const Voxels& voxels, VolumeL
 }
 
 } // namespace
-
-double voxelsPerSample(const VolumeInstance& volume, osgUtil::CullVisitor& visitor)
-{
-    const glm::dmat4 toEye = toGlm(*volume.frameToEye);
-    return voxelsPerDepth(toEye, volume.sampling) *
-           sampleDepth(toEye, volume.prepared->regionBox, volume.sampling, visitor);
-}
 
 std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table,
                                            osgUtil::CullVisitor& visitor)

@@ -15,8 +15,5 @@ namespace render {
 std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const TableTexture& table,
                                            osgUtil::CullVisitor& visitor);
 
-/// Voxels along the view axis from sample to sample of such a volume.
-double voxelsPerSample(const VolumeInstance& volume, osgUtil::CullVisitor& visitor);
-
 } // namespace render
 } // namespace osgVolumizer
