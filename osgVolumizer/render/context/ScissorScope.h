@@ -9,6 +9,14 @@
 namespace osgVolumizer {
 namespace render {
 
+/// What two rectangles (x, y, width, height) share; width or height is not positive where that is
+/// nothing.
+inline glm::ivec4 intersection(const glm::ivec4& a, const glm::ivec4& b)
+{
+    const int x = std::max(a[0], b[0]), y = std::max(a[1], b[1]);
+    return {x, y, std::min(a[0] + a[2], b[0] + b[2]) - x, std::min(a[1] + a[3], b[1] + b[3]) - y};
+}
+
 /// Narrows the scissor rectangle for a while, and puts back what it found, so that OSG's idea of
 /// the state stays true.
 class ScissorScope
@@ -31,13 +39,7 @@ public:
     /// none.
     bool set(const glm::ivec4& r) const
     {
-        glm::ivec4 box = r;
-        if (_enabled) {
-            const int x0 = std::max(r[0], _box[0]), y0 = std::max(r[1], _box[1]);
-            const int x1 = std::min(r[0] + r[2], _box[0] + _box[2]);
-            const int y1 = std::min(r[1] + r[3], _box[1] + _box[3]);
-            box = {x0, y0, x1 - x0, y1 - y0};
-        }
+        const glm::ivec4 box = _enabled ? intersection(r, {_box[0], _box[1], _box[2], _box[3]}) : r;
         if (box[2] <= 0 || box[3] <= 0) return false;
         glScissor(box[0], box[1], box[2], box[3]);
         return true;

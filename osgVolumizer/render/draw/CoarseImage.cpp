@@ -2,6 +2,7 @@
 
 #include "../context/ProgramInterface.h"
 #include "../context/ReportOnce.h"
+#include "../context/ScissorScope.h"
 #include "../context/ScreenPass.h"
 #include "../context/Uniforms.h"
 #include "AccumulationBuffers.h"
@@ -18,12 +19,6 @@ namespace render {
 namespace {
 
 constexpr unsigned UNIT_COARSE = UNIT_SPLIT_DEPTH; // of programs that are never coarse
-
-glm::ivec4 intersection(const glm::ivec4& a, const glm::ivec4& b)
-{
-    const int x = std::max(a[0], b[0]), y = std::max(a[1], b[1]);
-    return {x, y, std::min(a[0] + a[2], b[0] + b[2]) - x, std::min(a[1] + a[3], b[1] + b[3]) - y};
-}
 
 void clear()
 {

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 
 namespace osgVolumizer {
 namespace render {

@@ -37,10 +37,7 @@ std::string undefined(const std::string& defines)
 
 std::string memberCode(const ProgramFeatures& features, bool inOrder)
 {
-    std::string code;
-    for (const std::string& file : volumeShaders())
-        code += shaderSource(file);
-    if (features.paintCount > 0) code += paintSource(features.paintCount);
+    const std::string code = volumeSource(features);
     const std::string rays = rayShaderSource(features.rayFunction);
     if (inOrder) return code + rays + shaderSource("brick.glsl");
     return code + shaderSource("member.glsl") + rays;
@@ -73,12 +70,13 @@ std::string forEach(const std::string& code, const std::vector<Names>& members)
 
 } // namespace
 
-const std::vector<std::string>& volumeShaders()
+std::string volumeSource(const ProgramFeatures& volume)
 {
-    static const std::vector<std::string> files = {
-        "filtering.glsl", "voxels.glsl",   "transfer.glsl", "ray.glsl",
-        "shading.glsl",   "skipping.glsl", "region.glsl"};
-    return files;
+    std::string code;
+    for (const char* file : {"filtering.glsl", "voxels.glsl", "transfer.glsl", "ray.glsl",
+                             "shading.glsl", "skipping.glsl", "region.glsl"})
+        code += shaderSource(file);
+    return volume.paintCount > 0 ? code + paintSource(volume.paintCount) : code;
 }
 
 std::string memberSuffix(std::size_t number)

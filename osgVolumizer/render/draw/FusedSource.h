@@ -17,9 +17,9 @@ std::string memberSuffix(std::size_t number);
 std::string marchSource(const ProgramFeatures& volume);
 std::string marchSource(const std::vector<ProgramFeatures>& members, bool inOrder);
 
-/// The files of shaders/ that any volume's code begins with, in the order in which they are
-/// compiled.
-const std::vector<std::string>& volumeShaders();
+/// Shader code that any volume's begins with, marched or in slices: its voxels, table, light,
+/// paint.
+std::string volumeSource(const ProgramFeatures& volume);
 
 } // namespace render
 } // namespace osgVolumizer

@@ -16,8 +16,7 @@ SubstituteProgram::SubstituteProgram(osg::State& state, const AccumulationBuffer
     plain.slotCount = 0;
     plain.ranked = false;
     _before = state.getLastAppliedAttribute(osg::StateAttribute::PROGRAM);
-    _set =
-        volumeStateSet(plain, part.fused ? part.fused->features() : std::vector<ProgramFeatures>());
+    _set = volumeStateSet(plain, membersOf(part));
     state.applyAttribute(_set->getAttribute(osg::StateAttribute::PROGRAM));
     state.applyAttribute(_set->getAttribute(osg::StateAttribute::BLENDFUNC));
     state.haveAppliedAttribute(osg::StateAttribute::BLENDFUNC);

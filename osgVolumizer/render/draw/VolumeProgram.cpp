@@ -4,7 +4,6 @@
 #include "../context/SharedStateSets.h"
 #include "../context/Uniforms.h"
 #include "FusedSource.h"
-#include "Paint.h"
 #include "RayFunctions.h"
 
 #include <osg/AlphaFunc>
@@ -40,15 +39,13 @@ std::string withRayFunction(const char* file, VolumeAppearance::RayFunction func
 std::string fragmentSource(const ProgramFeatures& features,
                            const std::vector<ProgramFeatures>& members)
 {
-    std::string source = shaderSource("march.glsl") + shaderSource("segment.glsl");
+    const std::string source = shaderSource("march.glsl") + shaderSource("segment.glsl");
     if (!members.empty())
         return source + marchSource(members, features.inOrder) + shaderSource("ray.glsl") +
                shaderSource("slab.frag.glsl");
     if (features.slab) return source + marchSource(features) + shaderSource("slab.frag.glsl");
-    for (const std::string& file : volumeShaders())
-        source += shaderSource(file);
-    if (features.paintCount > 0) source += paintSource(features.paintCount);
-    return source + withRayFunction("slice.frag.glsl", features.rayFunction);
+    return source + volumeSource(features) +
+           withRayFunction("slice.frag.glsl", features.rayFunction);
 }
 
 osg::ref_ptr<osg::Program> program(const ProgramFeatures& features,

@@ -77,8 +77,7 @@ void addMembers(const MergedVolume& volume, FusedVolumes& fused)
     const VolumeInstance& instance = *volume.instance;
     const auto part = std::make_shared<const VolumePart>(partOf(instance));
     for (const SelectedBrick& brick : instance.bricks)
-        fused.members.push_back(
-            {part, batchOf(brick), toGlm(*instance.frameToEye), instance.wholeDepth});
+        fused.members.push_back({part, batchOf(brick), toGlm(*instance.frameToEye)});
 }
 
 // The march's own look, in the frame of the volume whose leaf stands for all.

@@ -4,6 +4,7 @@
 #include "../context/ContextRefusals.h"
 #include "../context/LeafState.h"
 #include "../context/Matrices.h"
+#include "../context/ScissorScope.h"
 #include "../context/ScreenPass.h"
 #include "../context/SharedStateSets.h"
 #include "../draw/VolumeProgram.h"
@@ -48,12 +49,6 @@ std::vector<core::DepthInterval> fromReference(const MergedVolume& volume,
         interval = {interval.nearDepth - reference, interval.farDepth - reference};
     }
     return intervals;
-}
-
-glm::ivec4 intersection(const glm::ivec4& a, const glm::ivec4& b)
-{
-    const int x = std::max(a[0], b[0]), y = std::max(a[1], b[1]);
-    return {x, y, std::min(a[0] + a[2], b[0] + b[2]) - x, std::min(a[1] + a[3], b[1] + b[3]) - y};
 }
 
 } // namespace
@@ -245,9 +240,7 @@ void MergedGroup::addVolume(const MergedVolume& volume, std::shared_ptr<const Vo
     _frame.counts.polygons += static_cast<double>(mesh->indexArray().size() / 3);
     ++_frame.counts.volumeLeaves;
     osgUtil::StateGraph* graph = instance.leaf->_parent;
-    const osg::ref_ptr<osg::StateSet> set =
-        volume.fused ? volumeStateSet(part->features, volume.fused->features())
-                     : volumeStateSet(part->features);
+    const osg::ref_ptr<osg::StateSet> set = volumeStateSet(part->features, membersOf(*part));
     if (graph->getStateSet() != set) graph = graph->_parent->find_or_insert(set);
     if (!part->above.depthTest.isUsual() && part->features.slotCount == 0)
         graph = graph->find_or_insert(depthTestStateSet(part->above.depthTest));

@@ -6,17 +6,18 @@
 //   mergebench [frames] [name]
 
 #include "../Median.h"
+#include "../ProcessTime.h"
 #include "MixedScene.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <random>
 
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using osgVolumizer::bench::median;
+using osgVolumizer::bench::processMilliseconds;
 
 namespace {
 
@@ -65,13 +66,6 @@ std::vector<Bench> makeBenches()
     }
     benches.push_back(outside);
     return benches;
-}
-
-double processMilliseconds()
-{
-    timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
 void run(const Bench& bench, int frames)

@@ -5,30 +5,24 @@
 //   overlapbench [frames] [size of the picture]
 
 #include "../Median.h"
+#include "../ProcessTime.h"
 #include "MixedScene.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <numeric>
 
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using osgVolumizer::bench::median;
+using osgVolumizer::bench::processMilliseconds;
 
 namespace {
 
 constexpr int SIZE = 64; // voxels per axis
 const glm::dvec3 MIDDLE(0.5 * (SIZE - 1));
-
-double processMilliseconds()
-{
-    timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 // Turned about its middle and moved a little: another way for each.
 osg::Matrixd placement(int number)
