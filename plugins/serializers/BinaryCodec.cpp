@@ -64,7 +64,7 @@ void writeName(osgDB::OutputStream& os, const std::string& name)
     os.writeCharArray(name.data(), static_cast<unsigned>(name.size()));
 }
 
-struct WriteValue
+struct WriteBinaryValue
 {
     osgDB::OutputStream& os;
 
@@ -211,7 +211,7 @@ void writeBinary(osgDB::OutputStream& os, const Record& record)
     for (const Field& field : record.fields()) {
         writeName(os, field.name);
         os << static_cast<unsigned char>(field.value.index());
-        std::visit(WriteValue{os}, field.value);
+        std::visit(WriteBinaryValue{os}, field.value);
     }
     os << os.END_BRACKET;
 }

@@ -32,6 +32,8 @@ void operator delete(void* p, std::size_t) noexcept
     std::free(p);
 }
 
+namespace AllocationTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using namespace osgVolumizer::testing;
@@ -85,3 +87,5 @@ TEST(Allocation, NoneInPolytopeClipping)
     frame();
     EXPECT_EQ(allocations - before, 0u);
 }
+
+} // namespace AllocationTest

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+namespace BrickLayoutTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 
@@ -182,3 +184,5 @@ TEST(BrickLayout, ASliceIsAsThickAsTheDistanceToANextOne)
         EXPECT_NEAR(volume, 19.0 * 19.0, 1e-9);
     }
 }
+
+} // namespace BrickLayoutTest

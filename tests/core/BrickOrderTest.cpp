@@ -7,6 +7,8 @@
 #include <numeric>
 #include <random>
 
+namespace BrickOrderTest {
+
 using namespace osgVolumizer::core;
 
 namespace {
@@ -86,3 +88,5 @@ TEST(BrickOrder, SortsASubset)
     order.sort({-10.0, -10.0, -10.0, 1.0}, bricks);
     EXPECT_EQ(bricks, (std::vector<std::int64_t>{23, 5, 0}));
 }
+
+} // namespace BrickOrderTest

@@ -12,6 +12,8 @@
 #include <numeric>
 #include <random>
 
+namespace CellSplittingTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 
@@ -169,3 +171,5 @@ TEST(CellSplitting, OrientationIsThatOfTheCell)
             EXPECT_NEAR(sum, volumes[kind], 1e-15);
         }
 }
+
+} // namespace CellSplittingTest

@@ -6,6 +6,8 @@
 
 #include <random>
 
+namespace ConvexRegionTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using namespace osgVolumizer::testing;
@@ -94,3 +96,5 @@ TEST(ConvexRegion, HolesOverlapsAndNotchesAreNone)
     TetraSet flat = makeBox(glm::dvec3(0.0), glm::dvec3(1.0, 1.0, 0.0));
     EXPECT_FALSE(convexRegion(flat));
 }
+
+} // namespace ConvexRegionTest

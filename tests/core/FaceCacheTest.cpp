@@ -5,6 +5,8 @@
 
 #include <thread>
 
+namespace FaceCacheTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using namespace osgVolumizer::testing;
@@ -151,3 +153,5 @@ TEST(FaceCache, ManyThreadsAndViews)
     EXPECT_EQ(cache.polygonizations() + cache.reuses(), 200u);
     EXPECT_EQ(cache.viewCount(), 2u);
 }
+
+} // namespace FaceCacheTest

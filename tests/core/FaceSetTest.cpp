@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace FaceSetTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using namespace osgVolumizer::testing;
@@ -81,3 +83,5 @@ TEST(Outlines, EveryEdgeOnce)
         length += glm::length(lines.points[lines.indices[i]] - lines.points[lines.indices[i + 1]]);
     EXPECT_NEAR(length, 2.0 * 4.0 * (1.0 + 2.0 + 3.0), 1e-12);
 }
+
+} // namespace FaceSetTest

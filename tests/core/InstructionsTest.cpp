@@ -10,6 +10,8 @@
 #include <cstring>
 #include <random>
 
+namespace InstructionsTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using namespace osgVolumizer::testing;
@@ -86,3 +88,5 @@ INSTANTIATE_TEST_SUITE_P(Layouts, InstructionSets,
                          ::testing::Values(VertexLayout::V3F, VertexLayout::T3F_V3F,
                                            VertexLayout::C4F_V3F, VertexLayout::T3F_C3F_V3F,
                                            VertexLayout::T3F_C4F_V3F));
+
+} // namespace InstructionsTest

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <random>
 
+namespace OrientationTest {
+
 using namespace osgVolumizer::core;
 
 namespace {
@@ -69,3 +71,5 @@ TEST(Orientation, CoordinatesOfVeryDifferentSize)
     EXPECT_EQ(orientationSign(a, b, c, {1.0, 5.0, std::nextafter(1.0, 2.0)}), 1);
     EXPECT_EQ(orientationSign(a, b, c, {1.0, 5.0, std::nextafter(1.0, 0.0)}), -1);
 }
+
+} // namespace OrientationTest

@@ -14,23 +14,25 @@
 #include <random>
 #include <vector>
 
+namespace PeriodChoiceTest {
+
 using namespace osgVolumizer::core;
 
 namespace {
 
-constexpr int COUNT = 16384;
+constexpr int TABLE_SIZE = 16384;
 
 std::vector<glm::vec4> makeTable(const std::function<double(double)>& extinctionBits)
 {
-    return extinctionTexels(COUNT, {1.0f, 0.5f, 0.25f}, extinctionBits);
+    return extinctionTexels(TABLE_SIZE, {1.0f, 0.5f, 0.25f}, extinctionBits);
 }
 
 PeriodQuestion question(const std::vector<glm::vec4>& texels, double tolerance)
 {
     PeriodQuestion q;
     q.tolerance = tolerance;
-    q.midpoints = {texels.data(), COUNT, false};
-    q.integrals = {texels.data(), COUNT, true};
+    q.midpoints = {texels.data(), TABLE_SIZE, false};
+    q.integrals = {texels.data(), TABLE_SIZE, true};
     q.box = {glm::dvec3(0.0), glm::dvec3(32.0)};
     return q;
 }
@@ -162,3 +164,5 @@ TEST(PeriodChoice, NothingToSeeNeedsNothing)
     q.box = Box3d();
     EXPECT_EQ(choosePeriod(waves, q).periodVoxel, 1.0);
 }
+
+} // namespace PeriodChoiceTest

@@ -15,6 +15,8 @@
 #include <map>
 #include <random>
 
+namespace PolygonizePropertyTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using namespace osgVolumizer::testing;
@@ -572,3 +574,5 @@ TEST(PolygonizeProperty, BoxTessellationsAgreeWithinTheirClipBox)
         }
     }
 }
+
+} // namespace PolygonizePropertyTest

@@ -8,6 +8,8 @@
 
 #include <limits>
 
+namespace PolygonizeSpacesTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using namespace osgVolumizer::testing;
@@ -332,3 +334,5 @@ TEST(PolygonizeSpaces, RefusalsNameTheFieldAndLeaveTheOutputAlone)
     p.curvedTolerance = 1e-14;
     expect(ErrorCode::TOO_LARGE, box, {}, view, p, "tetrahedra");
 }
+
+} // namespace PolygonizeSpacesTest

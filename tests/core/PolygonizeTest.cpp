@@ -5,6 +5,8 @@
 
 #include <memory>
 
+namespace PolygonizeTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using namespace osgVolumizer::testing;
@@ -66,3 +68,5 @@ TEST(Polygonize, AreasTimesSpacingIsTheVolumeAndBricksTile)
             EXPECT_NEAR(cutVolume, volume, 1e-3);
         }
 }
+
+} // namespace PolygonizeTest

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+namespace PreviewTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 
@@ -105,3 +107,5 @@ TEST(VisibleSphere, OfEverythingAndOfNothing)
     EXPECT_FALSE(of(zeros).has_value());
     EXPECT_FALSE(of(nan).has_value());
 }
+
+} // namespace PreviewTest

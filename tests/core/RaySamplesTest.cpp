@@ -10,21 +10,23 @@
 #include <functional>
 #include <vector>
 
+namespace RaySamplesTest {
+
 using namespace osgVolumizer::core;
 
 namespace {
 
-constexpr int COUNT = 1 << 18; // so many entries that the nearest one is exact to 1e-5
+constexpr int ENTRY_COUNT = 1 << 18; // so many entries that the nearest one is exact to 1e-5
 
 // A table of constant colour, with integrals of extinction by the midpoint rule.
 struct Table
 {
     Table(const glm::vec3& color, const std::function<double(double)>& extinctionBits)
-        : texels(extinctionTexels(COUNT, color, extinctionBits))
+        : texels(extinctionTexels(ENTRY_COUNT, color, extinctionBits))
     {
     }
-    ExtinctionTable midpoints() const { return {texels.data(), COUNT, false}; }
-    ExtinctionTable integrals() const { return {texels.data(), COUNT, true}; }
+    ExtinctionTable midpoints() const { return {texels.data(), ENTRY_COUNT, false}; }
+    ExtinctionTable integrals() const { return {texels.data(), ENTRY_COUNT, true}; }
     std::vector<glm::vec4> texels;
 };
 
@@ -138,3 +140,5 @@ TEST(ExtinctionTable, MeansRunEitherWay)
     EXPECT_EQ(t.mean(0.5, NAN), t.at(0.5));
     EXPECT_EQ(t.mean(NAN, NAN), glm::dvec4(0.0));
 }
+
+} // namespace RaySamplesTest

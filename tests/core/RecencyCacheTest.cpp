@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+namespace RecencyCacheTest {
+
 using namespace osgVolumizer::core;
 
 namespace {
@@ -99,3 +101,5 @@ TEST(RecencyCache, WhatIsForgottenIsFreedBeforeAnotherIsAdded)
     cache.add(2, nullptr);
     EXPECT_TRUE(first.expired());
 }
+
+} // namespace RecencyCacheTest

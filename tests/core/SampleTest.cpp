@@ -6,6 +6,8 @@
 
 #include <random>
 
+namespace SampleTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using namespace osgVolumizer::testing;
@@ -217,3 +219,5 @@ TEST(Sample, UserFamilyOfCylindersFillsTheVolume)
     }
     EXPECT_NEAR(volume, 24.0, 0.03);
 }
+
+} // namespace SampleTest

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numeric>
 
+namespace SolidsTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 
@@ -297,3 +299,5 @@ TEST(Cells, BadIndicesAreNamed)
     set.indices.pop_back();
     EXPECT_EQ(set.tessellate().status.code, ErrorCode::SIZE_MISMATCH);
 }
+
+} // namespace SolidsTest

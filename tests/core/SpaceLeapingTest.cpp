@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+namespace SpaceLeapingTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 
@@ -97,3 +99,5 @@ TEST(SpaceLeaping, RefusesBadRanges)
     ranges[5].minimum = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(leaper.setRanges({2, 2, 2}, ranges).index, 5);
 }
+
+} // namespace SpaceLeapingTest

@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+namespace TetraMeshTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using namespace osgVolumizer::testing;
@@ -185,3 +187,5 @@ TEST(TetraMesh, CyclesAreReportedAndAllTetrahedraStillCome)
     EXPECT_EQ(order.order.size(), 3u);
     EXPECT_FALSE(order.cyclic.empty());
 }
+
+} // namespace TetraMeshTest

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace TextTest {
+
 using namespace osgVolumizer::core;
 
 TEST(Text, NumbersAreWholeWords)
@@ -68,3 +70,5 @@ TEST(Text, FormattedNumbersReadBack)
     }
     EXPECT_EQ("0.1", formatNumber(0.1));
 }
+
+} // namespace TextTest

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+namespace TransferFunctionTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 using Point = TransferFunction::Point;
@@ -113,3 +115,5 @@ TEST(TransferFunction, UniformEntries)
     EXPECT_EQ(glm::dvec4(0.5), three->evaluate(0.25));
     EXPECT_EQ(ErrorCode::VALUE_INVALID, TransferFunction::createUniform({}).status.code);
 }
+
+} // namespace TransferFunctionTest

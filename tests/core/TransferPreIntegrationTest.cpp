@@ -8,6 +8,8 @@
 #include <cmath>
 #include <random>
 
+namespace TransferPreIntegrationTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 
@@ -238,3 +240,5 @@ TEST(TransferResampling, AJumpTakesWhatThereIs)
     EXPECT_GT(choice.error, 1e-4);
     EXPECT_LE(choice.count, 4096);
 }
+
+} // namespace TransferPreIntegrationTest

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace TransferSuggestionTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 
@@ -95,3 +97,5 @@ TEST(TransferSuggestion, PartsAddUp)
     EXPECT_EQ(whole.inner(), parts.inner());
     EXPECT_EQ(whole.border(), parts.border());
 }
+
+} // namespace TransferSuggestionTest

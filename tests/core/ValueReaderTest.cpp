@@ -9,6 +9,8 @@
 #include <set>
 #include <vector>
 
+namespace ValueReaderTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 
@@ -252,3 +254,5 @@ TEST(ValueReader, GradientsAreDifferencesAcrossBricks)
     ValueReader partly = volume.reader(layout);
     EXPECT_NEAR(partly.gradient({4.5, 3, 3}).x, trilinearGradient({4.5, 3, 3}).x, 1e-11);
 }
+
+} // namespace ValueReaderTest

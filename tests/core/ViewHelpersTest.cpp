@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+namespace ViewHelpersTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 
@@ -137,3 +139,5 @@ TEST(ViewHelpers, LastRowMayBeOffByRounding)
     v.toEye[3][3] = 1.001;
     EXPECT_FALSE(fromEye(v).ok());
 }
+
+} // namespace ViewHelpersTest

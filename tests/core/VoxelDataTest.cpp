@@ -8,6 +8,8 @@
 #include <numeric>
 #include <vector>
 
+namespace VoxelDataTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 
@@ -186,3 +188,5 @@ TEST(VoxelData, SizesSaturate)
     EXPECT_EQ(std::numeric_limits<std::int64_t>::max(),
               voxelBytes({huge, huge, 2}, VoxelType::FLOAT64, 4));
 }
+
+} // namespace VoxelDataTest

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+namespace VoxelOccupancyTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::core;
 
@@ -120,3 +122,5 @@ TEST(VoxelOccupancy, DistanceSaturates)
     EXPECT_EQ(255, distance[255]);
     EXPECT_EQ(255, distance[599]);
 }
+
+} // namespace VoxelOccupancyTest

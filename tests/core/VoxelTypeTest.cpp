@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+namespace VoxelTypeTest {
+
 using namespace osgVolumizer;
 
 TEST(VoxelType, NamesRoundTrip)
@@ -35,3 +37,5 @@ TEST(VoxelType, UnknownNameIsNamed)
     EXPECT_EQ(ErrorCode::VALUE_INVALID, type.status.code);
     EXPECT_NE(std::string::npos, type.status.text.find("uint9"));
 }
+
+} // namespace VoxelTypeTest

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <filesystem>
 
+namespace PluginFolderTest {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,3 +60,5 @@ TEST(PluginFolder, HasThePluginThatScenesNeed)
 }
 
 } // namespace
+
+} // namespace PluginFolderTest

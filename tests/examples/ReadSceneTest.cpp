@@ -15,6 +15,8 @@
 #include <iterator>
 #include <regex>
 
+namespace ReadSceneTest {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,3 +147,5 @@ TEST(Programs, TellTheLibrarysVersion)
 }
 
 } // namespace
+
+} // namespace ReadSceneTest

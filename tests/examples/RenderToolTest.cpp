@@ -17,6 +17,8 @@
 #include <regex>
 #include <sstream>
 
+namespace RenderToolTest {
+
 using namespace osgVolumizer::support;
 
 namespace {
@@ -413,3 +415,5 @@ TEST_F(RenderToolGLTest, RefusesInOneSentence)
     }
     EXPECT_EQ(runTool("--help").code, 0);
 }
+
+} // namespace RenderToolTest

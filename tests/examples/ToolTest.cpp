@@ -13,6 +13,8 @@
 #include <memory>
 #include <sys/wait.h>
 
+namespace ToolTest {
+
 using namespace osgVolumizer;
 namespace fs = std::filesystem;
 
@@ -191,3 +193,5 @@ TEST_F(Tool, WritingOverAFileReplacesItWhole)
     ASSERT_TRUE(voxels.ok());
     EXPECT_EQ(osg::Vec3i(4, 4, 2), (*voxels)->getSize());
 }
+
+} // namespace ToolTest

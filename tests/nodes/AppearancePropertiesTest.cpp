@@ -5,6 +5,8 @@
 #include <set>
 #include <string>
 
+namespace AppearancePropertiesTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -115,3 +117,5 @@ TEST(AppearanceProperties, WhatIsGotMayBeSet)
 }
 
 } // namespace
+
+} // namespace AppearancePropertiesTest

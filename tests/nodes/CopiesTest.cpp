@@ -8,6 +8,8 @@
 
 #include <map>
 
+namespace CopiesTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -172,3 +174,5 @@ TEST(Copies, OfExternalSamples)
 }
 
 } // namespace
+
+} // namespace CopiesTest

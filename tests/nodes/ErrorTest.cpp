@@ -12,6 +12,8 @@
 #include <thread>
 #include <vector>
 
+namespace ErrorTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -129,3 +131,5 @@ TEST(Error, EverySetterReportsWhatItRefuses)
     setErrorHandler(nullptr);
     clearLastError();
 }
+
+} // namespace ErrorTest

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <thread>
 
+namespace LookupTableTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -272,3 +274,5 @@ TEST(LookupTableFile, TablesOfOthersAreCalledByTheirName)
     // Nor is a table that can be read refused for what its comments say.
     EXPECT_TRUE(readLookupTable(write("own.lut", "# Color table file\n0 1 1 1 0\n")).ok());
 }
+
+} // namespace LookupTableTest

@@ -12,6 +12,8 @@
 #include <fstream>
 #include <numeric>
 
+namespace ReadDicomTest {
+
 using namespace osgVolumizer;
 namespace fs = std::filesystem;
 
@@ -358,3 +360,5 @@ TEST_F(ReadDicom, SlicesOfAnotherSizeAreNamed)
     EXPECT_EQ(ErrorCode::SIZE_MISMATCH, voxels.status.code);
     EXPECT_NE(std::string::npos, voxels.status.text.find("2.dcm has 4,2,1")) << voxels.status.text;
 }
+
+} // namespace ReadDicomTest

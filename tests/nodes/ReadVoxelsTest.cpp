@@ -10,6 +10,8 @@
 #include <fstream>
 #include <numeric>
 
+namespace ReadVoxelsTest {
+
 using namespace osgVolumizer;
 namespace fs = std::filesystem;
 
@@ -520,3 +522,5 @@ TEST(ReadVoxelsData, TheShippedHead)
     const std::vector<std::uint8_t> v = values<std::uint8_t>(**voxels);
     EXPECT_EQ(19284185u, std::accumulate(v.begin(), v.end(), 0u));
 }
+
+} // namespace ReadVoxelsTest

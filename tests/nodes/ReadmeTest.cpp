@@ -7,6 +7,8 @@
 #include <iterator>
 #include <string>
 
+namespace ReadmeTest {
+
 using namespace osgVolumizer;
 
 TEST(Readme, ListsEveryOptionOfTheLoader)
@@ -19,3 +21,5 @@ TEST(Readme, ListsEveryOptionOfTheLoader)
         table += "| `" + option.name + "=` " + option.values + " | " + option.help + " |\n";
     EXPECT_NE(text.find(table), std::string::npos) << "README.md should have:\n" << table;
 }
+
+} // namespace ReadmeTest

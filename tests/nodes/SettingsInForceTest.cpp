@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace SettingsInForceTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -145,3 +147,5 @@ TEST_F(SettingsInForce, FilteringIsExactForAToleranceThatTexturesMayNotKeep)
     EXPECT_TRUE(settings().exactFiltering);
     EXPECT_FALSE(hasReason("filtering is exact"));
 }
+
+} // namespace SettingsInForceTest

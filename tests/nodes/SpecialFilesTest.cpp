@@ -16,6 +16,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+namespace SpecialFilesTest {
+
 using namespace osgVolumizer;
 namespace fs = std::filesystem;
 
@@ -130,3 +132,5 @@ TEST_F(SpecialFiles, AreNotWrittenTo)
 }
 
 } // namespace
+
+} // namespace SpecialFilesTest

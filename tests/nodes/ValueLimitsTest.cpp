@@ -9,6 +9,8 @@
 #include <functional>
 #include <limits>
 
+namespace ValueLimitsTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -141,3 +143,5 @@ TEST(ValueLimits, CountsAreOfOneObjectOnly)
 }
 
 } // namespace
+
+} // namespace ValueLimitsTest

@@ -4,6 +4,8 @@
 
 #include <string>
 
+namespace VersionTest {
+
 TEST(Version, OfTheLibraryIsTheHeaders)
 {
     EXPECT_STREQ(osgVolumizer::getVersion(), OSGVOLUMIZER_VERSION);
@@ -21,3 +23,5 @@ TEST(Version, NumbersCompareAsVersionsDo)
     EXPECT_EQ(OSGVOLUMIZER_VERSION_NUMBER / 100 % 100, OSGVOLUMIZER_VERSION_MINOR);
     EXPECT_EQ(OSGVOLUMIZER_VERSION_NUMBER % 100, OSGVOLUMIZER_VERSION_PATCH);
 }
+
+} // namespace VersionTest

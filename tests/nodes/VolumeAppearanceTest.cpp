@@ -8,6 +8,8 @@
 
 #include <limits>
 
+namespace VolumeAppearanceTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -148,3 +150,5 @@ TEST(VolumeAppearance, OneTableHasOneTextureWhoeverHasIt)
 }
 
 } // namespace
+
+} // namespace VolumeAppearanceTest

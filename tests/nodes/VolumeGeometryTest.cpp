@@ -13,6 +13,8 @@
 #include <limits>
 #include <thread>
 
+namespace VolumeGeometryTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -212,3 +214,5 @@ TEST(VolumeGeometry, SetsMayBeReplacedWhileOthersLook)
 }
 
 } // namespace
+
+} // namespace VolumeGeometryTest

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <thread>
 
+namespace VoxelsTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -409,3 +411,5 @@ TEST(Voxels, AnOverlapThatIsRequiredIsRaisedOnly)
     EXPECT_EQ(5, voxels->getOverlap());
     EXPECT_TRUE(getLastError().ok());
 }
+
+} // namespace VoxelsTest

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace DataTest {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -69,3 +71,5 @@ TEST(Documents, RelativeLinksLeadSomewhere)
 }
 
 } // namespace
+
+} // namespace DataTest

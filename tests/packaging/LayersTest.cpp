@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+namespace LayersTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -271,3 +273,5 @@ TEST(Layers, OwnIncludesExist)
 }
 
 } // namespace
+
+} // namespace LayersTest

@@ -11,6 +11,8 @@
 #include <regex>
 #include <string>
 
+namespace PackagesTest {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -63,3 +65,5 @@ TEST(Packages, OfEveryScriptAreListed)
 }
 
 } // namespace
+
+} // namespace PackagesTest

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string>
 
+namespace SourceRulesTest {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,3 +38,5 @@ TEST(SourceRules, OnlyBrickResidencyAsksForSamples)
 }
 
 } // namespace
+
+} // namespace SourceRulesTest

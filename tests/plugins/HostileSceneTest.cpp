@@ -13,6 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+namespace HostileSceneTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -138,3 +140,5 @@ TEST_P(HostileSceneTest, NumbersWithoutMeaning)
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, HostileSceneTest, testing::Values("osgt", "osgb", "osgx"));
+
+} // namespace HostileSceneTest

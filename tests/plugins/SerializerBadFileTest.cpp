@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <random>
 
+namespace SerializerBadFileTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -249,3 +251,5 @@ TEST_P(BadFileTest, RandomDamageIsSurvived)
 
 INSTANTIATE_TEST_SUITE_P(Formats, BadFileTest, testing::Values("osgt", "osgb", "osgx"),
                          [](const auto& p) { return std::string(p.param); });
+
+} // namespace SerializerBadFileTest

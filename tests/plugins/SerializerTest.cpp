@@ -10,6 +10,8 @@
 #include <limits>
 #include <random>
 
+namespace SerializerTests {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -442,3 +444,5 @@ TEST_P(SerializerTest, WritingTwiceGivesTheSameFile)
 
 INSTANTIATE_TEST_SUITE_P(Formats, SerializerTest, testing::Values("osgt", "osgb", "osgx"),
                          [](const auto& p) { return std::string(p.param); });
+
+} // namespace SerializerTests

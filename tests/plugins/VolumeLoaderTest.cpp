@@ -13,6 +13,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace VolumeLoaderTest {
+
 using namespace osgVolumizer;
 namespace fs = std::filesystem;
 
@@ -244,3 +246,5 @@ TEST_F(VolumeLoader, OtherNamesAreLeftToOthers)
     EXPECT_TRUE(getLastError().ok()) << getLastError().text; // it is not ours to complain about
     EXPECT_FALSE(read(path(".volume")).validNode());
 }
+
+} // namespace VolumeLoaderTest

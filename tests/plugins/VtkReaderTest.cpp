@@ -22,6 +22,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+namespace VtkReaderTest {
+
 using namespace osgVolumizer;
 
 namespace {
@@ -336,3 +338,5 @@ TEST_F(VtkReaderPicture, ScalarsShowAsVoxelsDo)
 }
 
 #endif
+
+} // namespace VtkReaderTest

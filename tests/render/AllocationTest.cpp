@@ -8,6 +8,8 @@
 #include <support/GLTest.h>
 #include <support/Shapes.h>
 
+namespace AllocationTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using render::AllocationRequest;
@@ -192,3 +194,5 @@ TEST_F(TargetAllocation, GatheredRaysAreLeftOutWithAMessage)
 }
 
 } // namespace
+
+} // namespace AllocationTest

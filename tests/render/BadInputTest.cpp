@@ -12,6 +12,8 @@
 
 #include <limits>
 
+namespace BadInputTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -279,3 +281,5 @@ TEST_F(BadInput, TinyVolumes)
 }
 
 } // namespace
+
+} // namespace BadInputTest

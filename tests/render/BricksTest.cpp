@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace BricksTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -119,3 +121,5 @@ INSTANTIATE_TEST_SUITE_P(Techniques, Bricks,
                          techniqueName);
 
 } // namespace
+
+} // namespace BricksTest

@@ -14,6 +14,8 @@
 #include <atomic>
 #include <vector>
 
+namespace CardMemoryTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using render::AllocationRequest;
@@ -428,3 +430,5 @@ TEST_F(CardMemory, ASourceThatFailsIsNever)
 }
 
 } // namespace
+
+} // namespace CardMemoryTest

@@ -9,6 +9,8 @@
 
 #include <cmath>
 
+namespace ClosedFormTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -168,3 +170,5 @@ INSTANTIATE_TEST_SUITE_P(Techniques, ClosedForm,
                          nameOf);
 
 } // namespace
+
+} // namespace ClosedFormTest

@@ -14,6 +14,8 @@
 #include <mutex>
 #include <set>
 
+namespace CountersTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -263,3 +265,5 @@ INSTANTIATE_TEST_SUITE_P(Techniques, Counters,
                          techniqueName);
 
 } // namespace
+
+} // namespace CountersTest

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+namespace CoverageTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -139,3 +141,5 @@ INSTANTIATE_TEST_SUITE_P(Setups, PixelCoverage,
                          setupName);
 
 } // namespace
+
+} // namespace CoverageTest

@@ -11,6 +11,8 @@
 
 #include <limits>
 
+namespace ExtremeValuesTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -234,3 +236,5 @@ TEST_F(ExtremeValues, Vertices)
 }
 
 } // namespace
+
+} // namespace ExtremeValuesTest

@@ -16,6 +16,8 @@
 #include <osg/TexEnv>
 #include <osg/Texture2D>
 
+namespace FramebufferTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -206,3 +208,5 @@ INSTANTIATE_TEST_SUITE_P(Techniques, Framebuffer,
                          techniqueName);
 
 } // namespace
+
+} // namespace FramebufferTest

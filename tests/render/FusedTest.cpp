@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstdio>
 
+namespace FusedTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using render::ContextLimits;
@@ -306,3 +308,5 @@ TEST_F(Fused, SurfacesInBricksThatShareNoTexture)
     for (const auto& known : renderer.counters())
         EXPECT_TRUE(known.first != "osgVolumizer intervals" || known.second <= 1.0);
 }
+
+} // namespace FusedTest

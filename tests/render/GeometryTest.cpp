@@ -6,6 +6,8 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+namespace GeometryTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -250,3 +252,5 @@ TEST_F(Geometry, ColoursOfVerticesModulateVoxels)
 }
 
 } // namespace
+
+} // namespace GeometryTest

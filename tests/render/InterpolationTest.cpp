@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace InterpolationTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -200,3 +202,5 @@ TEST_F(Interpolation, TheOverlapThatIsNeededIsChosen)
 }
 
 } // namespace
+
+} // namespace InterpolationTest

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <atomic>
 
+namespace JoiningTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -315,3 +317,5 @@ TEST_F(Joining, AnUnreadableBrickIsAHole)
 }
 
 } // namespace
+
+} // namespace JoiningTest

@@ -11,6 +11,8 @@
 
 #include <cmath>
 
+namespace LimitsTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using render::ContextLimits;
@@ -171,3 +173,5 @@ TEST_F(Limits, PaintLargerThanTexturesIsCoarserToo)
               1.0 / 255.0 + 1e-3);
     EXPECT_TRUE(lastErrorNames("23,21,17 voxels")) << getLastError().text;
 }
+
+} // namespace LimitsTest

@@ -8,6 +8,8 @@
 #include <osg/Billboard>
 #include <osg/BlendFunc>
 
+namespace MergeCaptureTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -152,3 +154,5 @@ TEST_F(MergeCapture, Billboards)
 }
 
 } // namespace
+
+} // namespace MergeCaptureTest

@@ -9,6 +9,8 @@
 
 #include <random>
 
+namespace MergeCoverageTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -129,3 +131,5 @@ TEST_F(Coverage, SpheresAreDrawnOnce)
 }
 
 } // namespace
+
+} // namespace MergeCoverageTest

@@ -7,6 +7,8 @@
 
 #include <support/GLTest.h>
 
+namespace MergeDrawableTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -134,3 +136,5 @@ INSTANTIATE_TEST_SUITE_P(All, Leaves, ::testing::ValuesIn(leafKinds()),
                          [](const auto& test) { return std::string(test.param.name); });
 
 } // namespace
+
+} // namespace MergeDrawableTest

@@ -6,6 +6,8 @@
 
 #include <osg/Depth>
 
+namespace MergeOrderTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -162,3 +164,5 @@ TEST_F(MergeOrder, TwoPartsOfSpace)
 }
 
 } // namespace
+
+} // namespace MergeOrderTest

@@ -4,6 +4,8 @@
 
 #include <support/GLTest.h>
 
+namespace MergePaintTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -151,3 +153,5 @@ TEST_F(MergePaint, TakesColorOnly)
 }
 
 } // namespace
+
+} // namespace MergePaintTest

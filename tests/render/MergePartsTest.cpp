@@ -4,6 +4,8 @@
 
 #include <support/GLTest.h>
 
+namespace MergePartsTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -118,3 +120,5 @@ TEST_F(MergeParts, MovedApart)
 }
 
 } // namespace
+
+} // namespace MergePartsTest

@@ -7,6 +7,8 @@
 #include <osg/Depth>
 #include <osgUtil/CullVisitor>
 
+namespace MergePassThroughTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -236,3 +238,5 @@ TEST_F(PassThrough, ReversedDepthTestsAreNotMerged)
 }
 
 } // namespace
+
+} // namespace MergePassThroughTest

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <random>
 
+namespace MergeRandomTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::RenderOptions;
@@ -193,3 +195,5 @@ TEST_F(MergeRandom, NoneIsOffByMoreThanItsBound)
 }
 
 } // namespace
+
+} // namespace MergeRandomTest

@@ -10,6 +10,8 @@
 
 #include <random>
 
+namespace MergeSceneTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -295,3 +297,5 @@ INSTANTIATE_TEST_SUITE_P(All, MergeScene, ::testing::ValuesIn(SCENES),
                          [](const auto& test) { return std::string(test.param.name); });
 
 } // namespace
+
+} // namespace MergeSceneTest

@@ -10,6 +10,8 @@
 #include <osg/FrameBufferObject>
 #include <osgViewer/CompositeViewer>
 
+namespace MergeViewTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -470,3 +472,5 @@ TEST_F(MergeView, ClosingAContextFreesItsResources)
 }
 
 } // namespace
+
+} // namespace MergeViewTest

@@ -6,6 +6,8 @@
 #include <support/GLTest.h>
 #include <support/Hooks.h>
 
+namespace MovingViewsTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -176,3 +178,5 @@ TEST_F(MovingViews, OnlyWhatIsMarchedAtOnceHasFewerRays)
 }
 
 } // namespace
+
+} // namespace MovingViewsTest

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+namespace OneSliceTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -139,3 +141,5 @@ TEST_F(OneSlice, ShowsWhatItsTableDoesNotHide)
 }
 
 } // namespace
+
+} // namespace OneSliceTest

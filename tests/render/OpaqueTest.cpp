@@ -6,6 +6,8 @@
 #include <support/Precision.h>
 #include <support/Shapes.h>
 
+namespace OpaqueTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -116,3 +118,5 @@ INSTANTIATE_TEST_SUITE_P(Techniques, Opaque,
                          techniqueName);
 
 } // namespace
+
+} // namespace OpaqueTest

@@ -14,6 +14,8 @@
 #include <osgDB/Registry>
 #include <osgUtil/Optimizer>
 
+namespace OptimizerTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using osgUtil::Optimizer;
@@ -148,3 +150,5 @@ TEST_F(OptimizerFlags, MeshesBelowAnAppearance)
 }
 
 } // namespace
+
+} // namespace OptimizerTest

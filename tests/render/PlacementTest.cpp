@@ -9,6 +9,8 @@
 #include <osg/MatrixTransform>
 #include <osgUtil/Optimizer>
 
+namespace PlacementTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -181,3 +183,5 @@ INSTANTIATE_TEST_SUITE_P(Techniques, Placement,
                          techniqueName);
 
 } // namespace
+
+} // namespace PlacementTest

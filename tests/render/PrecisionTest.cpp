@@ -11,6 +11,8 @@
 #include <cmath>
 #include <cstring>
 
+namespace PrecisionTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using render::ContextLimits;
@@ -210,3 +212,5 @@ TEST_F(PrecisionOfAContext, LetsAnErrorToleranceHaveExactFiltering)
     EXPECT_LE(support::compare(unknown, exact).maximum, 2e-4);
     EXPECT_LE(support::compare(known, exact).maximum, 2e-4);
 }
+
+} // namespace PrecisionTest

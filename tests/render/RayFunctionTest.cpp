@@ -15,6 +15,8 @@
 #include <cmath>
 #include <iterator>
 
+namespace RayFunctionTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -307,3 +309,5 @@ TEST(RayFunctionProperties, RefuseWhatHasNoMeaning)
 }
 
 } // namespace
+
+} // namespace RayFunctionTest

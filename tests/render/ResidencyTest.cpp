@@ -15,6 +15,8 @@
 #include <future>
 #include <vector>
 
+namespace ResidencyTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using render::BrickResidency;
@@ -255,3 +257,5 @@ INSTANTIATE_TEST_SUITE_P(Techniques, SlowReads, ::testing::Values(A::SLABS, A::S
                          techniqueName);
 
 } // namespace
+
+} // namespace ResidencyTest

@@ -4,6 +4,8 @@
 
 #include <support/GLTest.h>
 
+namespace SamplingTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -167,3 +169,5 @@ TEST_F(Interpolation, NearestShowsCubes)
 }
 
 } // namespace
+
+} // namespace SamplingTest

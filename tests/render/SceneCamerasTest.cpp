@@ -17,6 +17,8 @@
 
 #include <mutex>
 
+namespace SceneCamerasTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -298,3 +300,5 @@ INSTANTIATE_TEST_SUITE_P(Models, SceneCameras,
                                            osgViewer::ViewerBase::DrawThreadPerContext));
 
 } // namespace
+
+} // namespace SceneCamerasTest

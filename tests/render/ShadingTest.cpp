@@ -14,6 +14,8 @@
 
 #include <cmath>
 
+namespace ShadingTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -339,3 +341,5 @@ TEST_F(Shading, IsosurfacesAreLitAtTheirRoots)
 }
 
 } // namespace
+
+} // namespace ShadingTest

@@ -10,6 +10,8 @@
 
 #include <numeric>
 
+namespace SkippingTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -290,3 +292,5 @@ TEST_F(Skipping, IsosurfacesAreFoundInTheirCells)
     EXPECT_GT(hits, 100u);
     EXPECT_GT(none, image.pixels.size() / 2);
 }
+
+} // namespace SkippingTest

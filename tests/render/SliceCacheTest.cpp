@@ -7,6 +7,8 @@
 
 #include <osg/MatrixTransform>
 
+namespace SliceCacheTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -167,3 +169,5 @@ TEST_F(SliceCache, SlackDoesNotTouchWhatIsMerged)
 }
 
 } // namespace
+
+} // namespace SliceCacheTest

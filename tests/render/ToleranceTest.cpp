@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+namespace ToleranceTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -192,3 +194,5 @@ TEST_F(Tolerance, MovingViewsAreCoarserOnly)
     renderer.render();
     EXPECT_EQ(support::compare(renderer.render(), plain).maximum, 0.0);
 }
+
+} // namespace ToleranceTest

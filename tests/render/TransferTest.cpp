@@ -9,6 +9,8 @@
 #include <cmath>
 #include <random>
 
+namespace TransferTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -184,3 +186,5 @@ TEST(TransferTables, AreMadeOnceAndFineEnough)
     EXPECT_TRUE(second.integrals);
     EXPECT_EQ(second.texture->getImage()->s(), 2 * second.count + 1);
 }
+
+} // namespace TransferTest

@@ -9,6 +9,8 @@
 #include <osg/DisplaySettings>
 #include <osgViewer/CompositeViewer>
 
+namespace ViewersTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -341,3 +343,5 @@ INSTANTIATE_TEST_SUITE_P(
     modelName);
 
 } // namespace
+
+} // namespace ViewersTest

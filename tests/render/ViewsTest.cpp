@@ -7,6 +7,8 @@
 
 #include <osg/MatrixTransform>
 
+namespace ViewsTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -149,3 +151,5 @@ INSTANTIATE_TEST_SUITE_P(Techniques, Views,
                          techniqueName);
 
 } // namespace
+
+} // namespace ViewsTest

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <limits>
 
+namespace VoxelTypesTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -165,3 +167,5 @@ INSTANTIATE_TEST_SUITE_P(Techniques, VoxelTypes,
                          techniqueName);
 
 } // namespace
+
+} // namespace VoxelTypesTest

@@ -8,6 +8,8 @@
 
 #include <osgViewer/Viewer>
 
+namespace WindowFormatsTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -160,3 +162,5 @@ TEST_F(WindowFormats, SeveralSamplesMakeSmoothEdges)
 }
 
 } // namespace
+
+} // namespace WindowFormatsTest

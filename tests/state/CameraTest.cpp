@@ -11,6 +11,8 @@
 #include <osg/Scissor>
 #include <osg/Texture2D>
 
+namespace CameraTest {
+
 #ifndef GL_FRAMEBUFFER_SRGB
 #define GL_FRAMEBUFFER_SRGB 0x8DB9
 #endif
@@ -264,3 +266,5 @@ INSTANTIATE_TEST_SUITE_P(Draw, Cameras,
                          [](const auto& tested) { return nameOf(tested.param); });
 
 } // namespace
+
+} // namespace CameraTest

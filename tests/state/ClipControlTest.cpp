@@ -7,6 +7,8 @@
 
 #include <osg/ClipControl>
 
+namespace ClipControlTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using osg::ClipControl;
@@ -89,3 +91,5 @@ INSTANTIATE_TEST_SUITE_P(Contents, ClipControls,
                                            SLABS | OVERLAP | TRANSLUCENT, SLICES | TRANSLUCENT));
 
 } // namespace
+
+} // namespace ClipControlTest

@@ -11,6 +11,8 @@
 #include <set>
 #include <sstream>
 
+namespace CompletenessTest {
+
 using namespace osgVolumizer::test;
 
 namespace {
@@ -138,3 +140,5 @@ TEST(StateTable, HasEachStateOnce)
 }
 
 } // namespace
+
+} // namespace CompletenessTest

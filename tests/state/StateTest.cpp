@@ -7,6 +7,8 @@
 
 #include <tuple>
 
+namespace StateTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -127,3 +129,5 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 } // namespace
+
+} // namespace StateTest

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <sstream>
 
+namespace TableTest {
+
 using namespace osgVolumizer::test;
 
 namespace {
@@ -56,3 +58,5 @@ TEST(StateTable, IsInTheDocumentation)
 }
 
 } // namespace
+
+} // namespace TableTest

@@ -5,6 +5,8 @@
 
 #include <support/GLTest.h>
 
+namespace MergeThreadsTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using support::FloatImage;
@@ -145,3 +147,5 @@ INSTANTIATE_TEST_SUITE_P(
                       osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext));
 
 } // namespace
+
+} // namespace MergeThreadsTest

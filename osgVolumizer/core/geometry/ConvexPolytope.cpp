@@ -11,7 +11,7 @@ namespace core {
 namespace {
 
 constexpr double ON_PLANE = 1e-13;
-constexpr std::uint32_t NONE = 0xffffffffu;
+constexpr std::uint32_t NO_NEXT = 0xffffffffu;
 
 } // namespace
 
@@ -78,7 +78,7 @@ void ConvexPolytope::clipFace(std::size_t face)
         const std::uint32_t a = _indices[i];
         const std::uint32_t b = _indices[i + 1 == _indices.size() ? start : i + 1];
         if (_distances[a] == 0.0 && _distances[b] == 0.0) {
-            if (_next.size() < vertices.size()) _next.resize(vertices.size(), NONE);
+            if (_next.size() < vertices.size()) _next.resize(vertices.size(), NO_NEXT);
             _next[b] = a;
         }
     }
@@ -89,13 +89,13 @@ void ConvexPolytope::clipFace(std::size_t face)
 void ConvexPolytope::closeWith(int tag)
 {
     for (std::uint32_t start = 0; start < _next.size(); ++start) {
-        if (_next[start] == NONE) continue;
+        if (_next[start] == NO_NEXT) continue;
         const std::size_t size = _indices.size();
-        for (std::uint32_t v = start; v != NONE && _next[v] != NONE;) {
+        for (std::uint32_t v = start; v != NO_NEXT && _next[v] != NO_NEXT;) {
             _indices.push_back(v);
             const std::uint32_t next = _next[v];
-            _next[v] = NONE;
-            v = next < _next.size() ? next : NONE;
+            _next[v] = NO_NEXT;
+            v = next < _next.size() ? next : NO_NEXT;
         }
         if (_indices.size() - size < 3) {
             _indices.resize(size);
@@ -108,12 +108,12 @@ void ConvexPolytope::closeWith(int tag)
 
 void ConvexPolytope::compact()
 {
-    _next.assign(vertices.size(), NONE);
+    _next.assign(vertices.size(), NO_NEXT);
     for (const std::uint32_t i : indices)
         _next[i] = 0;
     std::uint32_t used = 0;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-        if (_next[i] == NONE) continue;
+        if (_next[i] == NO_NEXT) continue;
         vertices[used] = vertices[i];
         _next[i] = used++;
     }

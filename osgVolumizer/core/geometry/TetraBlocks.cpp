@@ -14,7 +14,7 @@ namespace core {
 
 namespace {
 
-constexpr std::uint32_t NONE = 0xffffffffu;
+constexpr std::uint32_t NO_VERTEX = 0xffffffffu;
 constexpr std::size_t RECORD_PADDING = 4;
 
 /// Puts two zero bits after each of the low 10 bits.
@@ -62,7 +62,7 @@ void TetraBlocks::build(const TetraSet& set, const glm::dvec3& origin)
     sourceVertices.clear();
     sortTetrahedra(set);
     resizeLarge(tetrahedra, set.tetraCount());
-    _stamps.assign(set.vertices.size(), NONE);
+    _stamps.assign(set.vertices.size(), NO_VERTEX);
     _local.resize(set.vertices.size());
     for (std::size_t i = 0; i < tetrahedra.size(); ++i) {
         const TetraSet::Index* source = set.indices.data() + std::size_t(4) * sourceTetrahedra[i];
@@ -117,7 +117,7 @@ void TetraBlocks::findEdges()
     std::size_t width = 0;
     for (const Block& b : blocks)
         width = std::max<std::size_t>(width, b.vertexCount);
-    _edgeTable.assign(width * width, {NONE, 0});
+    _edgeTable.assign(width * width, {NO_VERTEX, 0});
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {
         Block& block = blocks[i];
         block.firstEdge = static_cast<std::uint32_t>(edges.size());

@@ -16,11 +16,6 @@ namespace core {
 
 namespace {
 
-glm::dvec3 depthGradient(const View& v)
-{
-    return {v.toEye[0][2], v.toEye[1][2], v.toEye[2][2]};
-}
-
 /// Faces and what they were made from.
 struct Made
 {
@@ -102,7 +97,7 @@ bool FaceCache::Private::Entry::reusable(const std::shared_ptr<const TetraSet>& 
         return false;
     if (made.view == view) return true;
     if (planesAcrossView(parameters)) {
-        const glm::dvec3 then = depthGradient(made.view), now = depthGradient(view);
+        const glm::dvec3 then = made.view.depthGradient(), now = view.depthGradient();
         const bool same = then == now && made.view.toEye[3][2] == view.toEye[3][2];
         if (!same && !(slack > 0.0 && angle(then, now) <= slack)) return false;
         // A view that polygonize() would refuse is refused, whatever there is in the cache.

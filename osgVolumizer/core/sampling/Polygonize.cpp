@@ -13,7 +13,7 @@ namespace core {
 
 namespace {
 
-constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
+constexpr double NO_DEPTH = std::numeric_limits<double>::quiet_NaN();
 
 /// The order in which surfaces are seen, where the eye is between the planes: by distance from it.
 void orderByDistance(const std::vector<double>& depths, double eye, std::vector<int>& order)
@@ -314,7 +314,7 @@ Status Polygonizer::polygonize(const SurfaceFamily& family, const SamplingParame
     p.plan.visible.clear();
     if (Status s = p.measure(); !s) return s;
     if (Status s = p.cut(makeLattice(p.nearest, p.farthest, spacing, parameters.maximumSamples),
-                         NONE, out);
+                         NO_DEPTH, out);
         !s)
         return s;
     out.axis = -1;

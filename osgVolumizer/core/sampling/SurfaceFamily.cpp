@@ -14,13 +14,7 @@ namespace core {
 
 namespace {
 
-constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
-
-/// Third row of the linear part, negated: the gradient of depth.
-glm::dvec3 depthGradient(const View& view)
-{
-    return {-view.toEye[0][2], -view.toEye[1][2], -view.toEye[2][2]};
-}
+constexpr double UNKNOWN = std::numeric_limits<double>::quiet_NaN();
 
 glm::dvec3 voxelCorner(const TetraSet& set)
 {
@@ -46,7 +40,7 @@ double farthestCorner(const glm::dmat4& projection, double farDepth)
 
 Status planes(ViewFamily& f, const View& view, const SamplingParameters& parameters)
 {
-    f.gradient = depthGradient(view);
+    f.gradient = view.depthGradient();
     f.anchorDepth = glm::dot(f.gradient, f.corner) - view.toEye[3][2];
     // Along the view normal, measured in voxel coordinates divided by the period, one layer has
     // thickness 1: the spacing is the length of the depth's gradient in those coordinates.
@@ -100,7 +94,7 @@ Result<ViewFamily> ViewFamily::create(const TetraSet& set, const Box3d& bounds, 
 
     ViewFamily f;
     f.corner = bounds.min;
-    f.eyeDepth = NONE;
+    f.eyeDepth = UNKNOWN;
     // Spheres about an eye at infinity are planes.
     f.mode = parameters.mode == SamplingMode::SPHERICAL && eye->w == 0.0
                  ? SamplingMode::VIEWPORT_ALIGNED

@@ -13,6 +13,9 @@ struct View
     glm::dmat4 toEye{1.0};
     glm::dmat4 projection{1.0};
 
+    /// How depth grows along each axis of the positions: the third row of `toEye`, negated.
+    glm::dvec3 depthGradient() const { return {-toEye[0][2], -toEye[1][2], -toEye[2][2]}; }
+
     bool operator==(const View& o) const { return toEye == o.toEye && projection == o.projection; }
 };
 

@@ -58,7 +58,7 @@ private:
     std::vector<glm::vec4> _texels;
 };
 
-double largest(const glm::dvec4& d)
+double largestChannel(const glm::dvec4& d)
 {
     return std::max(std::max(std::fabs(d.r), std::fabs(d.g)),
                     std::max(std::fabs(d.b), std::fabs(d.a)));
@@ -69,7 +69,7 @@ double steepestPlace(const std::vector<TransferFunction::Point>& points)
 {
     double steepest = -1.0, place = points[0].value;
     for (std::size_t i = 1; i < points.size(); ++i) {
-        const double change = largest(points[i].color - points[i - 1].color);
+        const double change = largestChannel(points[i].color - points[i - 1].color);
         if (change <= steepest) continue;
         steepest = change;
         place = 0.5 * points[i - 1].value + 0.5 * points[i].value;
@@ -101,7 +101,7 @@ double resamplingError(const TransferFunction& function, int count, double low, 
     double error = 0.0;
     const auto compare = [&](double value, const glm::dvec4& color) {
         const double t = (value - low) / (high - low);
-        error = std::max(error, largest(fetch(t) - premultiplied(color)));
+        error = std::max(error, largestChannel(fetch(t) - premultiplied(color)));
     };
     const auto& points = function.points();
     const double place = std::min(std::max(steepestPlace(points), low), high);

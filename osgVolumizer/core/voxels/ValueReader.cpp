@@ -41,7 +41,7 @@ double interpolate(const VoxelView& view, int component, const glm::ivec3& corne
     return std::isfinite(value) ? value : NAN;
 }
 
-bool holds(const Box3d& halfOpen, const glm::dvec3& p)
+bool contains(const Box3d& halfOpen, const glm::dvec3& p)
 {
     return glm::all(glm::lessThanEqual(halfOpen.min, p)) &&
            glm::all(glm::lessThan(p, halfOpen.max));
@@ -75,7 +75,7 @@ ValueReader::Loaded ValueReader::load(std::int64_t index) const
 
 const ValueReader::Loaded* ValueReader::find(const glm::dvec3& positionVoxel)
 {
-    if (_last && holds(_last->box, positionVoxel)) return _last;
+    if (_last && contains(_last->box, positionVoxel)) return _last;
     const std::int64_t index = _layout.brickAt(positionVoxel);
     if (index < 0) return nullptr;
     auto found = _bricks.find(index);

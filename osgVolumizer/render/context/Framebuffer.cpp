@@ -159,7 +159,7 @@ Attachment askAttachment(const ContextResources& resources, GLenum attachment)
 }
 
 // To the framebuffer bound for drawing.
-void attach(osg::GLExtensions& gl, GLenum attachment, const Attachment& what)
+void attachBack(osg::GLExtensions& gl, GLenum attachment, const Attachment& what)
 {
     const GLuint name = static_cast<GLuint>(what.name);
     if (what.type == GL_RENDERBUFFER_EXT) {
@@ -230,7 +230,7 @@ std::vector<GLenum> shareAttachments(osg::GLExtensions& gl, const ContextResourc
     discardErrors();
     for (const Attachment& other : others) {
         const GLenum attachment = colorAttachment(drawBuffers.size());
-        if (other.type != GL_NONE) attach(gl, attachment, other);
+        if (other.type != GL_NONE) attachBack(gl, attachment, other);
         drawBuffers.push_back(other.type != GL_NONE ? attachment : GLenum(GL_NONE));
     }
     gl.glDrawBuffers(static_cast<GLsizei>(drawBuffers.size()), drawBuffers.data());

@@ -53,9 +53,9 @@ GLuint makeTexture(osg::GLExtensions& gl, unsigned unit, GLenum internalFormat, 
 }
 
 // GL names that live as long as a measurement.
-struct Names
+struct GLNames
 {
-    explicit Names(osg::GLExtensions& extensions) : gl(extensions)
+    explicit GLNames(osg::GLExtensions& extensions) : gl(extensions)
     {
         constexpr float floats[] = {0.0f, 1.0f};
         constexpr unsigned char bytes[] = {0, 1, 0, 0};
@@ -68,14 +68,14 @@ struct Names
         gl.glFramebufferRenderbuffer(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT,
                                      GL_RENDERBUFFER_EXT, renderbuffer);
     }
-    ~Names()
+    ~GLNames()
     {
         gl.glDeleteFramebuffers(1, &framebuffer);
         gl.glDeleteRenderbuffers(1, &renderbuffer);
         glDeleteTextures(2, textures);
     }
-    Names(const Names&) = delete;
-    Names& operator=(const Names&) = delete;
+    GLNames(const GLNames&) = delete;
+    GLNames& operator=(const GLNames&) = delete;
 
     osg::GLExtensions& gl;
     GLuint textures[2] = {}, renderbuffer = 0, framebuffer = 0;
@@ -109,7 +109,7 @@ std::vector<glm::vec4> readFractions(osg::State& state, ContextResources& resour
     if (!resources.limits.floatTargets) return pixels;
     discardErrors();
     const StateScope scope(state);
-    const Names names(gl);
+    const GLNames names(gl);
     const osg::ref_ptr<osg::Program> program = makeProgram(resources.limits.filterBits);
     program->apply(state);
     const auto* linked = program->getPCP(state);

@@ -50,7 +50,7 @@ void reportMemory(const std::string& what)
 }
 
 // The target, in the best format that there is memory for.
-bool makeTarget(osg::State& state, int bits, ContextResources& resources)
+bool makeTargets(osg::State& state, int bits, ContextResources& resources)
 {
     AccumulationBuffers& buffers = resources.part<AccumulationBuffers>();
     const std::vector<GLenum> formats = colorFormats(bits, resources.limits);
@@ -138,7 +138,7 @@ void Accumulation::begin(osg::RenderInfo& renderInfo)
     buffers.hasOpaqueDepth = hasDepth && !_depthCleared;
     if (hasDepth) copyOpaqueDepth(state, buffers);
     if (buffers.hasOpaqueDepth) countCopied("osgVolumizer depths copied", 1);
-    if (hasDepth && needsTarget() && makeTarget(state, _settings.bits, *resources)) {
+    if (hasDepth && needsTarget() && makeTargets(state, _settings.bits, *resources)) {
         countCopied("osgVolumizer colors copied", 2); // and back
         _redirected = true;
         copyToTarget(state, buffers);

@@ -15,7 +15,7 @@ namespace render {
 
 namespace {
 
-constexpr double INFINITE_DEPTH = std::numeric_limits<double>::infinity();
+constexpr double UNBOUNDED_DEPTH = std::numeric_limits<double>::infinity();
 
 // Depths of the near and the far plane: where clip z = -clip w, and clip z = clip w. Projections
 // without a far plane put it nowhere in front.
@@ -24,7 +24,7 @@ core::DepthInterval clipDepths(const glm::dmat4& p)
     const double a = p[2][2] + p[2][3], b = p[3][2] + p[3][3];
     const double nearPlane = a != 0.0 ? b / a : 0.0;
     const double c = p[2][2] - p[2][3], d = p[3][2] - p[3][3];
-    return {nearPlane, c != 0.0 && d / c > nearPlane ? d / c : INFINITE_DEPTH};
+    return {nearPlane, c != 0.0 && d / c > nearPlane ? d / c : UNBOUNDED_DEPTH};
 }
 
 void expand(core::DepthInterval& range, const core::Box3d& box, const glm::dmat4& toEye)
@@ -44,7 +44,7 @@ void findDepths(VolumeInstance& volume, const core::View& view)
         return core::DepthInterval{std::max(range.nearDepth, clip.nearDepth),
                                    std::min(range.farDepth, clip.farDepth)};
     };
-    core::DepthInterval shown{INFINITE_DEPTH, -INFINITE_DEPTH}, whole = shown;
+    core::DepthInterval shown{UNBOUNDED_DEPTH, -UNBOUNDED_DEPTH}, whole = shown;
     for (const SelectedBrick& brick : volume.bricks)
         expand(shown, brick.box, view.toEye);
     if (volume.bricks.empty()) expand(shown, volume.prepared->bounds, view.toEye);

@@ -11,6 +11,8 @@
 #include <memory>
 #include <random>
 
+namespace FieldTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::oracle;
 
@@ -156,3 +158,5 @@ TEST(Roots, FlatCubicsEndSoon)
     appendCubicRoots(f, {0.5}, 0.0, 1.0, roots);
     EXPECT_LE(roots.size(), 4u);
 }
+
+} // namespace FieldTest

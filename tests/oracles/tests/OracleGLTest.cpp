@@ -4,6 +4,8 @@
 
 #include <osg/BlendFunc>
 
+namespace OracleGLTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::support;
 
@@ -63,3 +65,5 @@ TEST_F(OracleGLTest, TrianglesLieWhereGLPutsThem)
         EXPECT_LT(d.maximum, 1e-6) << d.worstX << " " << d.worstY;
     }
 }
+
+} // namespace OracleGLTest

@@ -12,6 +12,8 @@
 #include <limits>
 #include <random>
 
+namespace SceneTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::oracle;
 
@@ -324,3 +326,5 @@ TEST(ScreenTriangles, LeaveOutNothingThatARayHits)
         EXPECT_LT(listed, 2000u * 400u * 3 / 4);
     }
 }
+
+} // namespace SceneTest

@@ -18,6 +18,8 @@
 #include <filesystem>
 #include <tuple>
 
+namespace StockViewerTest {
+
 using namespace osgVolumizer::support;
 
 namespace {
@@ -174,3 +176,5 @@ TEST_F(StockViewer, ShowsAVolumeFileWithoutAScene)
 }
 
 } // namespace
+
+} // namespace StockViewerTest

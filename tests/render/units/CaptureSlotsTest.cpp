@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <set>
 
+namespace CaptureSlotsTest {
+
 using namespace osgVolumizer::render;
 
 namespace {
@@ -107,3 +109,5 @@ TEST(CaptureSlots, FitIntoMemory)
     for (int size = 64; size < 40000; size *= 2)
         EXPECT_LE(double(affordableSlots(size, size)) * size * size * 25, 512.0 * 1024 * 1024);
 }
+
+} // namespace CaptureSlotsTest

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+namespace FrameTimesTest {
+
 using namespace osgVolumizer;
 using render::FrameTimes;
 
@@ -170,3 +172,5 @@ TEST(FrameTimes, AfterAPauseNothingIsKnown)
 }
 
 } // namespace
+
+} // namespace FrameTimesTest

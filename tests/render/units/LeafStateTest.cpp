@@ -7,6 +7,8 @@
 
 #include <vector>
 
+namespace LeafStateTest {
+
 using namespace osgVolumizer::render;
 using osg::StateAttribute;
 
@@ -149,3 +151,5 @@ TEST(LeafState, ClipSpacesBecomeTheUsualOne)
         }
     EXPECT_EQ(toUsualClip(nullptr), glm::dmat4(1.0));
 }
+
+} // namespace LeafStateTest

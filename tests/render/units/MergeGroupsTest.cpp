@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <list>
 
+namespace MergeGroupsTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using namespace osgVolumizer::render;
@@ -170,3 +172,5 @@ TEST(MergeGroups, WithoutVolumesThereAreNone)
     bin.addSurface({-4, -4}, {4, 4}, 15);
     EXPECT_TRUE(bin.groups().groups.empty());
 }
+
+} // namespace MergeGroupsTest

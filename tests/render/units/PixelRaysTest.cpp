@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+namespace PixelRaysTest {
+
 using namespace osgVolumizer;
 using render::PixelRays;
 using render::pixelRays;
@@ -106,3 +108,5 @@ TEST(PixelRays, AreRefusedWhereThereAreNone)
     keystone[0][3] = 0.1;
     EXPECT_EQ(code(someView(), keystone), ErrorCode::NOT_SUPPORTED);
 }
+
+} // namespace PixelRaysTest

@@ -6,6 +6,8 @@
 #include <set>
 #include <vector>
 
+namespace ProgramFeaturesTest {
+
 using namespace osgVolumizer;
 using render::ProgramFeatures;
 using render::ProgramFlags;
@@ -71,3 +73,5 @@ TEST(ProgramFeatures, DefinesAreLines)
     EXPECT_EQ(features.defines(), "#define SLAB\n#define VOXELS\n#define CUBIC\n#define FETCH\n"
                                   "#define PAINTED\n#define SLOTS 8\n#define PLANES 3\n");
 }
+
+} // namespace ProgramFeaturesTest

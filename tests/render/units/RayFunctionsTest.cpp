@@ -9,6 +9,8 @@
 #include <set>
 #include <sstream>
 
+namespace RayFunctionsTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::render;
 
@@ -100,3 +102,5 @@ TEST(RayFunctions, NoOtherFileNamesThem)
                                   std::string("VolumeAppearance::") + name))
                 << file << ", " << name;
 }
+
+} // namespace RayFunctionsTest

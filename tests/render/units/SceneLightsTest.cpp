@@ -9,6 +9,8 @@
 
 #include <cmath>
 
+namespace SceneLightsTest {
+
 using namespace osgVolumizer::render;
 
 namespace {
@@ -108,3 +110,5 @@ TEST(SceneLights, OnlyThoseSwitchedOnElseAHeadLight)
         state->haveAppliedMode(GL_LIGHT0 + i, osg::StateAttribute::ON);
     EXPECT_EQ(enabledLights(lights, *state).size(), MAXIMUM_LIGHTS);
 }
+
+} // namespace SceneLightsTest

@@ -4,6 +4,8 @@
 
 #include <random>
 
+namespace ScreenAreasTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::render;
 
@@ -149,3 +151,5 @@ TEST(ScreenAreas, OutsideTheViewportThereAreNoPixels)
         EXPECT_TRUE(r[2] >= 0 && r[3] >= 0);
     }
 }
+
+} // namespace ScreenAreasTest

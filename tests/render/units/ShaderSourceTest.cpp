@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+namespace ShaderSourceTest {
+
 using namespace osgVolumizer::render;
 
 namespace {
@@ -74,3 +76,5 @@ TEST(ShaderSource, CodeWithASuffixHasNoNameOfTheCodeWithout)
     EXPECT_EQ(withSuffix("stepped = step.x + my_step;", "_1", {"step"}),
               "stepped = step_1.x + my_step;");
 }
+
+} // namespace ShaderSourceTest

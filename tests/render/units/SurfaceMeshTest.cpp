@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+namespace SurfaceMeshTest {
+
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using namespace osgVolumizer::render;
@@ -151,3 +153,5 @@ TEST(SurfaceMesh, IsNothingWhereTrianglesAreNotKnown)
     static_cast<osg::DrawElementsUInt*>(broken->getPrimitiveSet(0))->push_back(2);
     EXPECT_FALSE(meshOf(broken));
 }
+
+} // namespace SurfaceMeshTest

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <limits>
 
+namespace CompareTest {
+
 using namespace osgVolumizer::support;
 
 TEST(Compare, MeasuresOverCoveredPixelsOnly)
@@ -82,3 +84,5 @@ TEST(PictureFile, NamesTheFileThatItCannotWrite)
     EXPECT_NE(status.text.find("/nowhere/at/all.exr"), std::string::npos) << status.text;
     EXPECT_FALSE(writePicture(FloatImage(), "empty.png").ok());
 }
+
+} // namespace CompareTest

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+namespace OffscreenDisplayGLTest {
+
 using namespace osgVolumizer::support;
 using osgVolumizer::ErrorCode;
 
@@ -151,3 +153,5 @@ TEST_F(OffscreenDisplayGLTest, NumbersOfDevices)
     for (const char* text : {"", "-1", "one", "0 ", "0.5"})
         EXPECT_EQ(OffscreenDisplay::parseDevice(text).status.code, ErrorCode::VALUE_INVALID);
 }
+
+} // namespace OffscreenDisplayGLTest

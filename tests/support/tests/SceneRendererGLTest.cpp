@@ -6,6 +6,8 @@
 #include <cmath>
 #include <thread>
 
+namespace SceneRendererGLTest {
+
 using namespace osgVolumizer::support;
 using osgViewer::ViewerBase;
 
@@ -184,3 +186,5 @@ TEST_F(SceneRendererGLTest, ContextIsCurrentInOneThreadAtATime)
     EXPECT_FALSE(elsewhere);
     EXPECT_TRUE(second.value->release());
 }
+
+} // namespace SceneRendererGLTest
