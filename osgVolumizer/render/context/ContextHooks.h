@@ -2,6 +2,7 @@
 
 #include "Allocation.h"
 #include "ContextLimits.h"
+#include "March.h"
 #include "UserObject.h"
 
 #include <osg/GraphicsContext>
@@ -20,10 +21,15 @@ public:
     std::function<bool(const AllocationRequest&)> refuses;
     /// Called with what the context can do, each time that it is asked; the change is believed.
     std::function<void(ContextLimits&)> changeLimits;
+    /// Called with what was measured of marches.
+    std::function<void(MarchTimes&)> changeMarchTimes;
+    /// Code that compute shaders begin with, after the version.
+    std::string computeHeader;
 
     ContextHooks() = default;
     ContextHooks(const ContextHooks& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY)
-        : osg::Object(o, op), refuses(o.refuses), changeLimits(o.changeLimits)
+        : osg::Object(o, op), refuses(o.refuses), changeLimits(o.changeLimits),
+          changeMarchTimes(o.changeMarchTimes), computeHeader(o.computeHeader)
     {
     }
     META_Object(osgVolumizer, ContextHooks);

@@ -17,6 +17,9 @@ enum TextureUnit : unsigned
     UNIT_FIRST_PAINT = UNIT_FIRST_CAPTURED, ///< and the following, in other programs
     UNIT_COUNT = UNIT_FIRST_CAPTURED + 8
 };
+/// Image unit of compute shaders: the last one that every context has, since scenes begin with the
+/// first.
+constexpr unsigned UNIT_TARGET = 7;
 /// Vertex attributes.
 enum Attribute : unsigned
 {

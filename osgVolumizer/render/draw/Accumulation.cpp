@@ -1,5 +1,6 @@
 #include "Accumulation.h"
 
+#include "../context/March.h"
 #include "../context/ProgramInterface.h"
 #include "../context/ReportOnce.h"
 #include "../context/ScissorScope.h"
@@ -86,9 +87,11 @@ void Accumulation::restrictTo(const glm::ivec4& area)
     _area = visiblePart(area);
 }
 
-bool Accumulation::needsTarget() const
+bool Accumulation::needsTarget(osg::State& state, ContextResources& resources) const
 {
-    return _targetRequired || _framebuffer.multisampled || _framebuffer.colorBits < _settings.bits;
+    if (_targetRequired || _framebuffer.multisampled || _framebuffer.colorBits < _settings.bits)
+        return true;
+    return _settings.marched && _settings.bits > 8 && marchOf(state, resources) == March::COMPUTE;
 }
 
 // As precise as the framebuffer's own depth, so that equal depths stay equal. Of several samples
@@ -138,7 +141,8 @@ void Accumulation::begin(osg::RenderInfo& renderInfo)
     buffers.hasOpaqueDepth = hasDepth && !_depthCleared;
     if (hasDepth) copyOpaqueDepth(state, buffers);
     if (buffers.hasOpaqueDepth) countCopied("osgVolumizer depths copied", 1);
-    if (hasDepth && needsTarget() && makeTargets(state, _settings.bits, *resources)) {
+    if (hasDepth && needsTarget(state, *resources) &&
+        makeTargets(state, _settings.bits, *resources)) {
         countCopied("osgVolumizer colors copied", 2); // and back
         _redirected = true;
         copyToTarget(state, buffers);

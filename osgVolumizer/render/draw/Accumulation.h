@@ -19,6 +19,7 @@ struct AccumulationSettings
     /// as it is.
     int bits = 32;
     glm::ivec4 viewport{0}; ///< x, y, width, height: largest rectangle that may be drawn to
+    bool marched = false;   ///< by volumes that a compute shader could march, to a target only
 };
 
 /// One pass over a transparent bin's leaves. begin() takes a copy of the opaque scene's depth, if
@@ -67,7 +68,7 @@ public:
     void expectClearedDepth() { _depthCleared = true; }
 
 private:
-    bool needsTarget() const;
+    bool needsTarget(osg::State& state, ContextResources& resources) const;
     GLenum depthFormat(osg::State& state, AccumulationBuffers& buffers) const;
     void copyOpaqueDepth(osg::State& state, AccumulationBuffers& buffers) const;
     void copyToTarget(osg::State& state, AccumulationBuffers& buffers) const;

@@ -1,5 +1,6 @@
 #include "FusedDrawing.h"
 
+#include "../context/AttributeScope.h"
 #include "../context/ProgramInterface.h"
 #include "../context/Uniforms.h"
 #include "BatchDrawing.h"
@@ -42,30 +43,6 @@ public:
 private:
     unsigned _next = FIRST_MEMBER_UNIT, _end;
     std::map<const osg::TextureBuffer*, unsigned> _tables;
-};
-
-// Puts an attribute back: the next leaf may share our state set, and then finds nothing to apply.
-class AttributeScope
-{
-public:
-    AttributeScope(osg::State& state, osg::StateAttribute::Type type)
-        : _state(state), _type(type), _before(state.getLastAppliedAttribute(type))
-    {
-    }
-    AttributeScope(const AttributeScope&) = delete;
-    AttributeScope& operator=(const AttributeScope&) = delete;
-    ~AttributeScope()
-    {
-        if (_before)
-            _state.applyAttribute(_before);
-        else
-            _state.haveAppliedAttribute(_type);
-    }
-
-private:
-    osg::State& _state;
-    const osg::StateAttribute::Type _type;
-    const osg::StateAttribute* const _before;
 };
 
 Result<PixelRays> raysOf(const FusedDrawing& drawing, const FusedMember& member)

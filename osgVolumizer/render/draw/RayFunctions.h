@@ -15,7 +15,7 @@ namespace render {
 /// Its shader defines `march()`, where SLAB is defined: what a segment of the ray leaves in a
 /// brick; `slice()`, where SLICE is defined: the same of a layer about one place; and, if it
 /// gathers and RESOLVE is defined, `gatheredEntry()`: where the table is asked for what was
-/// gathered. They take the place of `#pragma ray_function` in slab.frag.glsl, slice.frag.glsl
+/// gathered. They take the place of `#pragma ray_function` in slab.glsl, slice.frag.glsl
 /// and resolve.frag.glsl.
 struct RayFunctionRow
 {

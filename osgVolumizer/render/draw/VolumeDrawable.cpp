@@ -12,6 +12,7 @@
 #include "BatchDrawing.h"
 #include "BoundMesh.h"
 #include "CoarseImage.h"
+#include "ComputeMarch.h"
 #include "FusedDrawing.h"
 #include "RayTarget.h"
 #include "SubstituteProgram.h"
@@ -126,6 +127,8 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
     std::optional<CoarseImage> image;
     if (_part->features.coarse) image.emplace(state, *resources, viewport, _part->rayDistance);
     if (image && !image->made()) image.reset();
+    ComputeMarch compute(state, *resources, *_part, *_mesh, image.has_value());
+    if (compute.isUsed()) program = state.getLastAppliedProgramObject();
     const Result<PixelRays> rays =
         pixelRays(view.toEye, _part->above.toUsualClip * view.projection,
                   image ? image->viewport() : viewport, look.referenceDepth, look.center);
@@ -140,11 +143,12 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
                        image ? image->viewport() : viewport};
     if (_part->fused && !canMarch(fused, program)) {
         image.reset();
+        compute.leave();
         fused.viewport = viewport;
         drawRectangles(state, *resources, *_mesh, *_part,
                        [&]() { drawMembersApart(fused, _mesh->batches.front()); });
     } else {
-        drawMarched(renderInfo, *program, *rays, view, image);
+        drawMarched(renderInfo, *program, *rays, view, image, compute);
     }
     count(renderInfo.getCurrentCamera(), state.getFrameStamp(), "osgVolumizer draw calls",
           static_cast<double>(_mesh->batches.size()));
@@ -157,7 +161,7 @@ void VolumeDrawable::drawImplementation(osg::RenderInfo& renderInfo) const
 void VolumeDrawable::drawMarched(osg::RenderInfo& renderInfo,
                                  const osg::Program::PerContextProgram& program,
                                  const PixelRays& rays, const core::View& view,
-                                 std::optional<CoarseImage>& image) const
+                                 std::optional<CoarseImage>& image, ComputeMarch& compute) const
 {
     osg::State& state = *renderInfo.getState();
     const std::shared_ptr<ContextResources> resources = contextResources(state);
@@ -173,6 +177,15 @@ void VolumeDrawable::drawMarched(osg::RenderInfo& renderInfo,
         setPaints(renderInfo, resources->limits, uniforms, *_part->paints, UNIT_FIRST_PAINT);
     const BatchDrawing drawing{renderInfo, resources->limits, uniforms, _part->features, view};
     if (_part->features.coarse) setOneRayPerPixel(uniforms, currentViewport());
+    if (compute.isUsed()) {
+        if (compute.draw(drawing))
+            return count(renderInfo.getCurrentCamera(), state.getFrameStamp(),
+                         "osgVolumizer compute marches", 1.0);
+        compute.leave();
+        const auto* fragments = state.getLastAppliedProgramObject();
+        if (fragments) drawMarched(renderInfo, *fragments, rays, view, image, compute);
+        return;
+    }
     if (image)
         drawCoarse(*image, glm::ivec4(currentViewport()), drawing, *resources, *_mesh, *_part);
     else if (_part->features.gathers())

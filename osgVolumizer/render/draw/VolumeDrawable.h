@@ -15,6 +15,7 @@ namespace osgVolumizer {
 namespace render {
 
 class CoarseImage;
+class ComputeMarch;
 struct PixelRays;
 
 /// One leaf: a volume between two depths, drawn brick by brick, far to near. Made fresh for each
@@ -39,7 +40,7 @@ public:
 private:
     void drawMarched(osg::RenderInfo& renderInfo, const osg::Program::PerContextProgram& program,
                      const PixelRays& rays, const core::View& view,
-                     std::optional<CoarseImage>& image) const;
+                     std::optional<CoarseImage>& image, ComputeMarch& compute) const;
 
     std::shared_ptr<const VolumeMesh> _mesh;
     std::shared_ptr<const VolumePart> _part;

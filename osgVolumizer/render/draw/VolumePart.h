@@ -28,6 +28,7 @@ struct VolumePart
     /// the march: table, voxels and paint are the members' own.
     std::shared_ptr<const FusedVolumes> fused;
     std::vector<glm::ivec4> scissors; ///< window rectangles to draw in; none: everywhere
+    glm::ivec4 covered{0};            ///< window rectangle that holds all that is drawn
     glm::dvec3 surfaceNormal{0.0};    ///< slices: frame units; along which `step` is counted
     bool inFrontOfSplit = false;      ///< slabs: which part of a segment that surfaces split
     int rank = 0;                     ///< slabs: the segment behind this rank of surfaces

@@ -35,15 +35,16 @@ std::string withRayFunction(const char* file, VolumeAppearance::RayFunction func
     return source.replace(at, place.size(), rayShaderSource(function));
 }
 
-// The fragment shader's files.
-std::string fragmentSource(const ProgramFeatures& features,
-                           const std::vector<ProgramFeatures>& members)
+// The files of the shader that marches, or draws a slice.
+std::string pixelSource(const ProgramFeatures& features,
+                        const std::vector<ProgramFeatures>& members)
 {
-    const std::string source = shaderSource("march.glsl") + shaderSource("segment.glsl");
+    const std::string source =
+        shaderSource("pixel.glsl") + shaderSource("march.glsl") + shaderSource("segment.glsl");
     if (!members.empty())
         return source + marchSource(members, features.inOrder) + shaderSource("ray.glsl") +
-               shaderSource("slab.frag.glsl");
-    if (features.slab) return source + marchSource(features) + shaderSource("slab.frag.glsl");
+               shaderSource("slab.glsl");
+    if (features.slab) return source + marchSource(features) + shaderSource("slab.glsl");
     return source + volumeSource(features) +
            withRayFunction("slice.frag.glsl", features.rayFunction);
 }
@@ -58,7 +59,7 @@ osg::ref_ptr<osg::Program> program(const ProgramFeatures& features,
     osg::ref_ptr<osg::Program> result = new osg::Program;
     result->setName("osgVolumizer " + kind);
     result->addShader(makeShader(osg::Shader::VERTEX, header, shaderSource(kind + ".vert.glsl")));
-    result->addShader(makeShader(osg::Shader::FRAGMENT, header, fragmentSource(features, members)));
+    result->addShader(makeShader(osg::Shader::FRAGMENT, header, pixelSource(features, members)));
     return result;
 }
 
@@ -126,6 +127,19 @@ osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features,
     for (const ProgramFeatures& member : members)
         key.push_back(member.key());
     return sharedStateSet(key, [&]() { return makeStateSet(features, members); });
+}
+
+osg::ref_ptr<osg::Program> makeComputeProgram(const std::string& header,
+                                              const ProgramFeatures& features,
+                                              const std::vector<ProgramFeatures>& members)
+{
+    osg::ref_ptr<osg::Program> result = new osg::Program;
+    result->setName("osgVolumizer compute");
+    result->addShader(
+        makeShader(osg::Shader::COMPUTE,
+                   header + features.defines() + (members.empty() ? "" : "#define FUSED\n"),
+                   pixelSource(features, members)));
+    return result;
 }
 
 osg::ref_ptr<osg::StateSet> depthTestStateSet(const DepthTest& test)

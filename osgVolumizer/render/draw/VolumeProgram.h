@@ -19,6 +19,11 @@ osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features);
 /// each member has its own.
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features,
                                            const std::vector<ProgramFeatures>& members);
+/// A compute shader that does the same, in the pixels of an `area`, to the image `target`: see
+/// runCompute(). The header is computeHeader() and defines TARGET_FORMAT.
+osg::ref_ptr<osg::Program> makeComputeProgram(const std::string& header,
+                                              const ProgramFeatures& features,
+                                              const std::vector<ProgramFeatures>& members);
 /// Below that state: a depth test other than the usual one.
 osg::ref_ptr<osg::StateSet> depthTestStateSet(const DepthTest& test);
 /// Draws what a ray function gathered, of values or of colours, at once.

@@ -186,6 +186,7 @@ VolumePart MergedGroup::partIn(const MergeRegion& region, const MergedVolume& vo
 {
     VolumePart part = partOf(*volume.instance);
     part.scissors = region.rectangles;
+    part.covered = pixelRectangle(volume.screen, _frame.viewport, 2);
     if (volume.fused) {
         part.look = volume.look;
         part.features = volume.look->features;

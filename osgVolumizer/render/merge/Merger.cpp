@@ -180,6 +180,8 @@ osg::ref_ptr<Accumulation> Merger::makeAccumulation() const
     settings.bits = 8;
     for (const auto& volume : _volumes)
         settings.bits = std::max(settings.bits, volume->appearance->getAccumulationBits());
+    settings.marched = std::any_of(_volumes.begin(), _volumes.end(),
+                                   [](const auto& volume) { return volume->look->features.slab; });
     return new Accumulation(settings);
 }
 

@@ -49,7 +49,7 @@ TEST(ShaderSource, NothingElseIsRenamed)
 
 TEST(ShaderSource, FilesAreKnownByTheirPathsBelowShaders)
 {
-    EXPECT_NE(shaderSource("slab.frag.glsl").find("void main()"), std::string::npos);
+    EXPECT_NE(shaderSource("slab.glsl").find("void main()"), std::string::npos);
     EXPECT_NE(shaderSource("rays/sum.glsl").find("gatheredEntry"), std::string::npos);
     EXPECT_EQ(shaderSource("sum.glsl"), "");
     EXPECT_EQ(shaderSource("nothing.glsl"), "");

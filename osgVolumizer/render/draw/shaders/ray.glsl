@@ -8,7 +8,7 @@ uniform mat3 frameToUnits; // frame vector -> vector in opacity units
 
 void pixelRay(out vec3 origin, out vec3 direction)
 {
-    vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
+    vec3 window = vec3(windowPlace() - windowCenter, 1.0);
     origin = rayOrigin * window;
     direction = rayDirection * window;
 }
@@ -19,8 +19,8 @@ uniform vec4 imageToWindow; // scale, offset
 uniform vec4 windowEnds;    // first and last pixel that may be looked at
 ivec2 windowPixel()
 {
-    return ivec2(clamp(gl_FragCoord.xy * imageToWindow.xy + imageToWindow.zw, windowEnds.xy, windowEnds.zw));
+    return ivec2(clamp(windowPlace() * imageToWindow.xy + imageToWindow.zw, windowEnds.xy, windowEnds.zw));
 }
 #else
-ivec2 windowPixel() { return ivec2(gl_FragCoord.xy); }
+ivec2 windowPixel() { return ivec2(windowPlace()); }
 #endif

@@ -33,7 +33,7 @@ vec3 originEye, directionEye, towardsEye; // the ray in the eye frame
 // Finds where the ray is in the eye frame.
 void findEyeRay()
 {
-    vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
+    vec3 window = vec3(windowPlace() - windowCenter, 1.0);
     originEye = rayOriginEye * window;
     directionEye = rayDirectionEye * window;
     towardsEye = -normalize(directionEye);

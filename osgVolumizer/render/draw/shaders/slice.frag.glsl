@@ -26,7 +26,7 @@ void main()
     vec3 origin, direction;
     pixelRay(origin, direction);
 #ifdef SPHERICAL
-    float thickness = spacing / length(rayDirectionEye * vec3(gl_FragCoord.xy - windowCenter, 1.0));
+    float thickness = spacing / length(rayDirectionEye * vec3(windowPlace() - windowCenter, 1.0));
 #else
     // A ray along the planes would see an infinitely thick layer: it sees no plane either.
     float thickness = spacing / max(abs(dot(surfaceNormal, direction)), 1e-12);

@@ -108,6 +108,7 @@ void CapturedSurfaces::addVolume(LeafList& leaves) const
     const MergedVolume& volume = _group.volumes().front();
     VolumePart part = _group.wholeIn(_region, volume);
     part.scissors = _region.rectangles; // surfaces may reach beyond the volumes
+    part.covered = _group.frame().viewport;
     part.features.slotCount = slotCount();
     const Blending blending = blendingOf(_group.surfaces()[_region.surfaces.front()].graph());
     part.surfaceWeights = {blending.colorWeighted ? 1.0f : 0.0f,

@@ -162,7 +162,7 @@ vec4 slice(vec3 place, vec3 direction, float thickness)
 #endif
 #endif
 #ifdef SHADING
-    vec3 directionEye = rayDirectionEye * vec3(gl_FragCoord.xy - windowCenter, 1.0);
+    vec3 directionEye = rayDirectionEye * vec3(windowPlace() - windowCenter, 1.0);
     c.rgb = shade(c.rgb, place, eyePosition, -normalize(directionEye));
 #endif
 #ifdef PAINTED

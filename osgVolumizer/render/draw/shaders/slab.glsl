@@ -3,12 +3,22 @@
 // the segment. A brick takes the steps whose midpoints lie in its clip box: bricks add no ends, and however many
 // there are, all samples stay where they are.
 
-flat in vec2 slab; // nearest and farthest depth, from the reference depth
+#ifdef COMPUTE
+uniform vec2 slabEnds; // nearest and farthest depth, from the reference depth
+#define slab slabEnds
+layout(TARGET_FORMAT, binding = TARGET_UNIT) uniform image2D target;
+vec4 fragColor;
+#ifdef SLOTS
+vec4 fragThrough;
+#endif
+#else
+flat in vec2 slab;
 #if defined(SLOTS) && !defined(COARSE)
 layout(location = 0, index = 0) out vec4 fragColor;
 layout(location = 0, index = 1) out vec4 fragThrough; // what is left of the light behind
 #else
 out vec4 fragColor;
+#endif
 #endif
 
 #ifdef OPAQUE_DEPTH
@@ -37,7 +47,7 @@ uniform vec2 surfaceWeights; // 1: colour, alpha is yet to be weighted by alpha
 // Where the ray has a window depth.
 float rayAt(float windowZ)
 {
-    vec3 window = vec3(gl_FragCoord.xy - windowCenter, 1.0);
+    vec3 window = vec3(windowPlace() - windowCenter, 1.0);
     float z = 2.0 * windowZ - 1.0;
     return (z * dot(clipWOrigin, window) - dot(clipZOrigin, window)) /
            (dot(clipZDirection, window) - z * dot(clipWDirection, window));
@@ -104,6 +114,9 @@ void compositeSurfaces(float enter, float leave)
 
 void main()
 {
+#ifdef COMPUTE
+    if (any(greaterThanEqual(vec2(gl_GlobalInvocationID.xy), area.zw))) return;
+#endif
     float tNear = slab.x, tFar = slab.y;
 #ifdef OPAQUE_DEPTH
     if (opaqueRule == 1) tFar = min(tFar, opaqueOnRay());
@@ -112,7 +125,7 @@ void main()
 #ifdef RANKED
     float nearer = sortedDepth(rank), farther = sortedDepth(rank - 1);
     if (rank > 0) {
-        if (farther < 0.0) discard;
+        if (farther < 0.0) LEAVE;
         tFar = min(tFar, rayAt(farther));
     }
     if (nearer >= 0.0) tNear = max(tNear, rayAt(nearer));
@@ -129,10 +142,19 @@ void main()
 #ifdef SLOTS
     compositeSurfaces(enter, leave);
 #else
-    if (!(enter < leave)) discard;
+    if (!(enter < leave)) LEAVE;
     fragColor = lightBetween(tNear, tFar);
 #endif
 #ifdef COUNT_SAMPLES
     fragColor = vec4(sampleCount, 0.0, 0.0, 0.0);
+#endif
+#ifdef COMPUTE
+    ivec2 pixel = ivec2(windowPlace());
+#ifdef SLOTS
+    vec4 through = fragThrough;
+#else
+    float through = 1.0 - fragColor.a;
+#endif
+    imageStore(target, pixel, fragColor + through * imageLoad(target, pixel));
 #endif
 }
