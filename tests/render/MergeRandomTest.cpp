@@ -3,6 +3,7 @@
 #include "MixedScene.h"
 
 #include <support/GLTest.h>
+#include <support/Instrumented.h>
 
 #include <cstdlib>
 #include <random>
@@ -15,11 +16,7 @@ using support::RenderOptions;
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(NDEBUG)
-constexpr int SCENES = 100; // instrumented code is ten times slower
-#else
-constexpr int SCENES = 1000;
-#endif
+constexpr int SCENES = support::INSTRUMENTED ? 60 : 1000;
 constexpr int PIXELS = 24;
 constexpr int SIZE = 9; // voxels per axis
 
