@@ -91,8 +91,7 @@ TEST(RayFunctions, ShadersDefineWhatTheirRowsNeed)
 TEST(RayFunctions, NoOtherFileNamesThem)
 {
     // A file that did would have to be changed for a new one.
-    for (const char* file :
-         {"slab.glsl", "slice.frag.glsl", "resolve.frag.glsl", "transfer.glsl"})
+    for (const char* file : {"slab.glsl", "slice.frag.glsl", "resolve.frag.glsl", "transfer.glsl"})
         for (const char* name : VolumeAppearance::RAY_FUNCTION_NAMES)
             EXPECT_FALSE(contains(shaderSource(file), name)) << file << ", " << name;
     for (const char* file : {"draw/VolumeProgram.cpp", "draw/RayTarget.cpp",
