@@ -16,7 +16,7 @@ using support::RenderOptions;
 
 namespace {
 
-constexpr int SCENES = support::INSTRUMENTED ? 60 : 1000;
+constexpr int SCENES = support::INSTRUMENTED ? 60 : 600;
 constexpr int PIXELS = 24;
 constexpr int SIZE = 9; // voxels per axis
 
