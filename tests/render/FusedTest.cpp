@@ -73,9 +73,7 @@ protected:
     {
         support::SceneRenderer renderer(scene.root(), _options);
         renderer.render();
-        for (const auto& known : renderer.counters())
-            if (known.first == counter) return known.second;
-        return 0.0;
+        return renderer.counters()[counter];
     }
 
     RenderOptions _options;

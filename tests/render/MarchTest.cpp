@@ -54,8 +54,7 @@ protected:
         support::SceneRenderer renderer(scene.root(), options);
         Drawn drawn;
         drawn.picture = renderer.render();
-        for (const auto& known : renderer.counters())
-            if (known.first == COUNTER) drawn.computed = known.second;
+        drawn.computed = renderer.counters()[COUNTER];
         return drawn;
     }
     // Expects the same picture of both.
@@ -70,6 +69,18 @@ protected:
         EXPECT_GT(d.pixels, 500u);
         EXPECT_LE(d.maximum, allowed);
         EXPECT_EQ(getLastError().text, "");
+    }
+    // Expects a message, and what fragments draw, in a context that a hook spoils.
+    void expectFragments(const std::function<void(render::ContextHooks&)>& spoil,
+                         std::optional<Kind> march, const std::string& message) const
+    {
+        const Drawn expected = draw(several(2), _options, Kind::FRAGMENTS);
+        const RenderOptions spoilt = support::prepared(
+            _options, [spoil](osgViewer::Viewer& viewer) { spoil(support::contextHooks(viewer)); });
+        const Drawn drawn = draw(several(2), spoilt, march);
+        EXPECT_EQ(drawn.computed, 0.0);
+        EXPECT_LE(support::compare(drawn.picture, expected.picture).maximum, 0.0);
+        EXPECT_NE(getLastError().text.find(message), std::string::npos) << getLastError().text;
     }
     static osg::ref_ptr<Voxels> voxels() { return makeVoxels(glm::ivec3(SIZE), bumps); }
     static osg::Matrixd turned(double angle)
@@ -199,28 +210,18 @@ TEST_F(March, IsTheFasterOne)
 // A context that is lost while it is measured tells no time: a message, and fragments.
 TEST_F(March, TimesThatAreNotKnown)
 {
-    const Drawn expected = draw(several(2), _options, Kind::FRAGMENTS);
-    const RenderOptions lost = support::prepared(_options, [](osgViewer::Viewer& viewer) {
-        support::contextHooks(viewer).changeMarchTimes = [](MarchTimes& t) { t = {}; };
-    });
-    const Drawn drawn = draw(several(2), lost, std::nullopt);
-    EXPECT_EQ(drawn.computed, 0.0);
-    EXPECT_LE(support::compare(drawn.picture, expected.picture).maximum, 0.0);
-    EXPECT_NE(getLastError().text.find("could not be measured"), std::string::npos)
-        << getLastError().text;
+    expectFragments(
+        [](render::ContextHooks& hooks) {
+            hooks.changeMarchTimes = [](MarchTimes& times) { times = {}; };
+        },
+        std::nullopt, "could not be measured");
 }
 
 TEST_F(March, ShadersThatDoNotCompile)
 {
-    const Drawn expected = draw(several(2), _options, Kind::FRAGMENTS);
-    const RenderOptions broken = support::prepared(_options, [](osgViewer::Viewer& viewer) {
-        support::contextHooks(viewer).computeHeader = "#error of a compiler\n";
-    });
-    const Drawn drawn = draw(several(2), broken, Kind::COMPUTE);
-    EXPECT_EQ(drawn.computed, 0.0);
-    EXPECT_LE(support::compare(drawn.picture, expected.picture).maximum, 0.0);
-    EXPECT_NE(getLastError().text.find("compiler refuses a compute shader"), std::string::npos)
-        << getLastError().text;
+    expectFragments(
+        [](render::ContextHooks& hooks) { hooks.computeHeader = "#error of a compiler\n"; },
+        Kind::COMPUTE, "compiler refuses a compute shader");
 }
 
 TEST_F(March, ContextsWithoutComputeShaders)

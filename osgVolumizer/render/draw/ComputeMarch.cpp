@@ -70,9 +70,9 @@ std::optional<glm::vec2> slabOf(const VolumeMesh& mesh)
 bool isOneMarch(const VolumePart& part, const VolumeMesh& mesh)
 {
     const ProgramFeatures& features = part.features;
-    return mesh.batches.size() == 1 && slabOf(mesh) && features.slab && !features.coarse &&
-           !features.gathers() && !features.splitDepth && !features.ranked &&
-           part.above.isUsual() && part.covered[2] > 0 && part.covered[3] > 0;
+    return mesh.batches.size() == 1 && features.slab && !features.coarse && !features.gathers() &&
+           !features.splitDepth && !features.ranked && part.above.isUsual() &&
+           part.covered[2] > 0 && part.covered[3] > 0;
 }
 
 bool isDrawnTo(const AccumulationBuffers& buffers)
@@ -100,9 +100,14 @@ ComputeMarch::ComputeMarch(osg::State& state, ContextResources& resources, const
     : _state(state), _resources(resources), _part(part), _mesh(mesh)
 {
     const AccumulationBuffers& buffers = resources.part<AccumulationBuffers>();
-    if (coarse || !isOneMarch(part, mesh) || !isDrawnTo(buffers) || !wholeViewport()) return;
+    if (coarse || !isOneMarch(part, mesh)) return;
     if (part.features.needsSortedSurfaces() && !buffers.sortedSurfaces[0]) return;
-    if (marchOf(state, resources) != March::COMPUTE) return;
+    if (marchOf(state, resources) != March::COMPUTE || !isDrawnTo(buffers)) return;
+    const std::optional<glm::ivec4> viewport = wholeViewport();
+    const std::optional<glm::vec2> slab = slabOf(mesh);
+    if (!viewport || !slab) return;
+    _viewport = *viewport;
+    _slab = *slab;
     osg::Program& program = programOf(state, resources, part, buffers.colorFormat);
     _before = std::make_unique<AttributeScope>(state, osg::StateAttribute::PROGRAM);
     state.applyAttribute(&program);
@@ -115,7 +120,7 @@ ComputeMarch::ComputeMarch(osg::State& state, ContextResources& resources, const
 std::vector<glm::ivec4> ComputeMarch::areas() const
 {
     const AccumulationBuffers& buffers = _resources.part<AccumulationBuffers>();
-    glm::ivec4 within = intersection(*wholeViewport(), {0, 0, buffers.width, buffers.height});
+    glm::ivec4 within = intersection(_viewport, {0, 0, buffers.width, buffers.height});
     if (glIsEnabled(GL_SCISSOR_TEST)) {
         glm::ivec4 box;
         glGetIntegerv(GL_SCISSOR_BOX, &box[0]);
@@ -136,7 +141,7 @@ bool ComputeMarch::draw(const BatchDrawing& drawing)
     const BrickBatch& batch = _mesh.batches.front();
     if (glm::any(glm::greaterThan(batch.clipMin, batch.clipMax))) return true;
     if (!setBatch(drawing, batch)) return false;
-    drawing.uniforms.set("slabEnds", *slabOf(_mesh));
+    drawing.uniforms.set("slabEnds", _slab);
     for (const glm::ivec4& area : areas()) {
         drawing.uniforms.set("area", glm::vec4(area));
         runCompute(_state, *buffers.color, buffers.colorFormat, area[2], area[3]);

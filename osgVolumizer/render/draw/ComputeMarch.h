@@ -40,6 +40,8 @@ private:
     ContextResources& _resources;
     const VolumePart& _part;
     const VolumeMesh& _mesh;
+    glm::ivec4 _viewport{0}; // window pixels: x, y, width, height
+    glm::vec2 _slab{0.0f};   // nearest and farthest depth, from the reference depth
     std::unique_ptr<AttributeScope> _before;
 };
 
