@@ -2,6 +2,7 @@
 
 #include "../context/March.h"
 #include "../context/ScissorScope.h"
+#include "../context/Uniforms.h"
 #include "AccumulationBuffers.h"
 #include "FusedVolumes.h"
 #include "VolumeProgram.h"
