@@ -44,9 +44,32 @@ core::ValueRange rangeOf(const Voxels& voxels)
     return {range.x(), range.y()};
 }
 
+// Reads the finest level that is small.
+core::Preview previewOfPages(const Voxels& voxels)
+{
+    constexpr std::int64_t SMALL = std::int64_t(1) << 22; // samples
+    const core::BrickTree& tree = voxels.getTree();
+    int level = tree.levelCount() - 1;
+    while (level > 0 && core::sampleCount(tree.levelSize(tree.size(), level - 1)) <= SMALL)
+        --level;
+    core::Preview preview(tree.levelSize(tree.size(), level), 1 << level);
+    for (std::int64_t i = tree.index(level, glm::ivec3(0)), end = i + tree.brickCount(level);
+         i < end; ++i) {
+        const core::Box3i samples = tree.brick(i).samples;
+        const Result<VoxelBlock> block = voxels.readPage(i);
+        if (block.ok())
+            preview.add({block->data, voxels.getType(), voxels.getComponents(), samples.size()},
+                        samples.min);
+        else
+            reportError(block.status);
+    }
+    return preview;
+}
+
 // Reads all bricks; expects valid voxels.
 core::Preview previewOf(const Voxels& voxels)
 {
+    if (voxels.isPaged()) return previewOfPages(voxels);
     core::Preview preview(voxels.getLayout().size());
     for (std::int64_t i = 0; i < voxels.getLayout().brickCount(); ++i) {
         const core::Box3i samples = voxels.getLayout().brick(i).samples;

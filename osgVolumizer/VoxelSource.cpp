@@ -48,6 +48,19 @@ Status VoxelSource::Description::validate() const
     return {};
 }
 
+Status VoxelSource::readLevel(int level, const core::Box3i& region, void* destination) const
+{
+    if (level == 0) return read(region, destination);
+    return {ErrorCode::INDEX_OUT_OF_RANGE,
+            "the voxel source has no level " + std::to_string(level)};
+}
+
+std::optional<std::pair<double, double>> VoxelSource::levelRange(int level,
+                                                                 const core::Box3i& region) const
+{
+    return level == 0 ? valueRange(region) : std::nullopt;
+}
+
 Status VoxelSource::checkRegion(const core::Box3i& region, const glm::ivec3& size)
 {
     for (int axis = 0; axis < 3; ++axis)

@@ -63,6 +63,20 @@ public:
     /// block. Saves the copy.
     virtual VoxelBlock share(const core::Box3i& /*region*/) const { return {}; }
 
+    /// How many copies of the volume there are, each coarser than the one before: see
+    /// core/voxels/BrickTree.h. Level 0 is the volume. A source of more than one level is paged:
+    /// see Voxels::isPaged().
+    virtual int levelCount() const { return 1; }
+    /// What read() is for level 0. The value of a sample of level l stands for 2^l samples of the
+    /// volume on each axis: their mean, or what suits the data.
+    virtual Status readLevel(int level, const core::Box3i& region, void* destination) const;
+    /// Lowest and highest value of all samples of the volume that a region of a level stands for,
+    /// where that is known without reading; else nothing.
+    virtual std::optional<std::pair<double, double>> levelRange(int level,
+                                                                const core::Box3i& region) const;
+    /// Edge of the bricks in which a source of several levels is read best, in samples.
+    virtual int pageSize() const { return 64; }
+
 protected:
     VoxelSource() = default;
     /// A copy with CopyOp::DEEP_COPY_OBJECTS is to share nothing that can be changed.

@@ -65,7 +65,7 @@ Voxels::Voxels(const Voxels& o, const osg::CopyOp& op)
     : osg::Object(o, op),
       _source(dynamic_cast<VoxelSource*>(op(static_cast<const osg::Object*>(o._source.get())))),
       _description(o._description), _brickSize(o._brickSize), _overlap(o._overlap),
-      _layout(o._layout), _fileName(o._fileName), _filePath(o._filePath),
+      _layout(o._layout), _tree(o._tree), _fileName(o._fileName), _filePath(o._filePath),
       _fileOptions(o._fileOptions), _layoutCount(nextLayoutCount())
 {
     std::lock_guard<std::mutex> lock(o._rangeMutex);
@@ -81,6 +81,7 @@ ReportedStatus Voxels::setSource(VoxelSource* source)
     osg::ref_ptr<VoxelSource> keep(source);
     VoxelSource::Description description;
     core::BrickLayout layout;
+    core::BrickTree tree;
     if (source) {
         description = source->describe();
         if (Status status = description.validate(); !status.ok())
@@ -89,10 +90,13 @@ ReportedStatus Voxels::setSource(VoxelSource* source)
             core::BrickLayout::create(description.size, _brickSize, _overlap);
         if (!made.ok()) return reported(made.status);
         layout = *made;
+        if (Status status = makeTree(source, _overlap, tree); !status.ok())
+            return reported(std::move(status));
     }
     _source = keep;
     _description = description;
     _layout = layout;
+    _tree = tree;
     {
         std::lock_guard<std::mutex> lock(_rangeMutex);
         double low = 0.0, high = 1.0;
@@ -103,6 +107,7 @@ ReportedStatus Voxels::setSource(VoxelSource* source)
             !source || description.components != 1 || voxelTypeSize(description.type) == 1;
     }
     forgetBricks();
+    if (isPaged()) getRange();
     return {};
 }
 
@@ -179,21 +184,70 @@ bool Voxels::hasExplicitRange() const
     return _explicitRange;
 }
 
-std::optional<std::pair<double, double>> Voxels::knownRange(const core::Box3i& samples) const
+// No tree for a source that has only the volume.
+Status Voxels::makeTree(const VoxelSource* source, int overlap, core::BrickTree& tree) const
+{
+    tree = {};
+    const int levels = source ? source->levelCount() : 1;
+    if (levels <= 1) return {};
+    Result<core::BrickTree> made =
+        core::BrickTree::create(source->describe().size, levels, source->pageSize(), overlap);
+    if (made.ok()) tree = *made;
+    return made.status;
+}
+
+Result<VoxelBlock> Voxels::readPage(std::int64_t page) const
+{
+    const core::TreeBrick brick = _tree.brick(page);
+    Status status;
+    bool shared = false;
+    ++_readCount;
+    Block block = readBrick(brick.level, brick.samples, shared, status);
+    if (status.ok()) return block;
+    status.text = "level " + std::to_string(brick.level) + ", brick " +
+                  core::formatTriple(brick.coordinates) +
+                  (_fileName.empty() ? "" : " of " + _fileName) + ": " + status.text;
+    return status;
+}
+
+std::optional<std::pair<double, double>> Voxels::getPageRange(std::int64_t page) const
+{
+    const core::TreeBrick brick = _tree.brick(page);
+    return knownRange(brick.level, brick.samples);
+}
+
+std::optional<std::pair<double, double>> Voxels::knownRange(int level,
+                                                            const core::Box3i& samples) const
 {
     // A user's source may throw; nothing may pass from here through OSG's callbacks.
     try {
-        return _source->valueRange(samples);
+        return level == 0 ? _source->valueRange(samples) : _source->levelRange(level, samples);
     } catch (...) {
         return std::nullopt;
     }
 }
 
+// Of the samples of the coarsest level.
+core::ValueRange Voxels::findCoarsestRange() const
+{
+    core::ValueRange found;
+    for (const std::int64_t page : _tree.roots(glm::dvec4(0.0, 0.0, 1.0, 0.0))) {
+        const Result<VoxelBlock> block = readPage(page);
+        if (!block.ok()) continue;
+        found.expand(core::scanRange({block->data, _description.type, _description.components,
+                                      _tree.brick(page).samples.size()},
+                                     significantComponent(_description)));
+    }
+    return found;
+}
+
 void Voxels::findRange() const
 {
     core::ValueRange found;
-    if (const auto known = knownRange({glm::ivec3(0), _description.size})) {
+    if (const auto known = knownRange(0, {glm::ivec3(0), _description.size})) {
         found = {known->first, known->second};
+    } else if (isPaged()) {
+        found = findCoarsestRange();
     } else {
         for (std::int64_t i = 0; i < _layout.brickCount(); ++i) {
             const auto range = getBrickRange(i);
@@ -222,7 +276,7 @@ ReportedStatus Voxels::setOverlap(int samples)
 Status Voxels::requireOverlap(int samples)
 {
     if (samples <= _overlap) return {};
-    if (valid() && _layout.brickCount() == 1) {
+    if (valid() && _layout.brickCount() == 1 && !isPaged()) {
         // A single brick is all of the voxels, however much it would share.
         Result<core::BrickLayout> layout =
             core::BrickLayout::create(_description.size, _brickSize, samples);
@@ -243,8 +297,12 @@ ReportedStatus Voxels::rebuildLayout(const glm::ivec3& brickSize, int overlap)
     const glm::ivec3 size = valid() ? _description.size : glm::ivec3(1);
     const Result<core::BrickLayout> layout = core::BrickLayout::create(size, brickSize, overlap);
     if (!layout.ok()) return reported(layout.status);
+    core::BrickTree tree;
+    if (Status status = makeTree(_source.get(), overlap, tree); !status.ok())
+        return reported(std::move(status));
     _brickSize = brickSize;
     _overlap = overlap;
+    _tree = tree;
     if (valid()) _layout = *layout;
     forgetBricks();
     return {};
@@ -295,16 +353,18 @@ Voxels::BrickPtr Voxels::findBrick(std::int64_t brick) const
     return found;
 }
 
-Voxels::Block Voxels::readBrick(const core::Box3i& samples, bool& shared, Status& status) const
+Voxels::Block Voxels::readBrick(int level, const core::Box3i& samples, bool& shared,
+                                Status& status) const
 {
     try { // as in knownRange()
         const std::int64_t bytes =
             core::voxelBytes(samples.size(), _description.type, _description.components);
-        const Block own = _source->share(samples);
+        const Block own = level == 0 ? _source->share(samples) : Block();
         shared = own && own.bytes == static_cast<std::size_t>(bytes);
         if (shared) return own;
         std::shared_ptr<unsigned char[]> data(new unsigned char[static_cast<std::size_t>(bytes)]);
-        status = _source->read(samples, data.get());
+        status = level == 0 ? _source->read(samples, data.get())
+                            : _source->readLevel(level, samples, data.get());
         if (status.ok()) return {data, data.get(), static_cast<std::size_t>(bytes)};
     } catch (const std::bad_alloc&) {
         status = {ErrorCode::TOO_LARGE, "there is no memory for a brick of voxels"};
@@ -325,7 +385,7 @@ Voxels::Block Voxels::loadBrick(std::int64_t index, Brick& brick) const
     Status status;
     bool shared = false;
     ++_readCount;
-    block = readBrick(_layout.brick(index).samples, shared, status);
+    block = readBrick(0, _layout.brick(index).samples, shared, status);
     brick.failed = !status.ok();
     if (block) _cache.add({index, brick.modified}, block, shared);
     if (brick.failed) {
@@ -359,7 +419,7 @@ std::pair<double, double> Voxels::getBrickRange(std::int64_t index) const
     std::lock_guard<std::mutex> lock(brick->mutex);
     if (!brick->rangeKnown) {
         const core::Box3i samples = _layout.brick(index).samples;
-        if (const auto known = knownRange(samples)) {
+        if (const auto known = knownRange(0, samples)) {
             brick->range = {known->first, known->second};
         } else if (const Block block = loadBrick(index, *brick)) {
             brick->range = core::scanRange(

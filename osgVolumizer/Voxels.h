@@ -4,6 +4,7 @@
 #include "RenderData.h"
 #include "VoxelSource.h"
 #include "core/voxels/BrickLayout.h"
+#include "core/voxels/BrickTree.h"
 
 #include <osg/Vec2d>
 #include <osg/Vec3d>
@@ -19,6 +20,10 @@
 #include <utility>
 
 namespace osgVolumizer {
+
+namespace core {
+struct ValueRange;
+}
 
 /// The voxels of one volume, cut into bricks: shared by any number of appearances, views and
 /// contexts. Bricks are read from the source when they are needed; those used last are kept.
@@ -57,7 +62,8 @@ public:
     /// Data values at the two ends of a lookup table's domain, at least 1e-30 apart, which floats
     /// can still divide by. Default: the type's
     /// range for 8 bit and RGBA, else the lowest and highest value found in the data, once, on the
-    /// first call of getRange(); that reads all bricks where the source does not know it.
+    /// first call of getRange(); that reads all bricks where the source does not know it. Of paged
+    /// voxels setSource() reads the coarsest level for it.
     ReportedStatus setRange(const osg::Vec2d& range);
     osg::Vec2d getRange() const;
     bool hasExplicitRange() const;
@@ -76,6 +82,18 @@ public:
     /// without a report.
     Status requireOverlap(int samples);
     const core::BrickLayout& getLayout() const { return _layout; }
+
+    /// Whether the voxels are drawn from bricks of several levels, read in the background and kept
+    /// within the budgets of Paging.h: so are those whose source has more than one level. Nothing
+    /// of them is read while a scene is traversed or drawn.
+    bool isPaged() const { return _tree.levelCount() > 0; }
+    /// The bricks of all levels, "pages": none where the voxels are not paged.
+    const core::BrickTree& getTree() const { return _tree; }
+    /// Reads a page, each time anew; an error is not reported. Thread safe.
+    Result<VoxelBlock> readPage(std::int64_t page) const;
+    /// Lowest and highest value of all that a page stands for, where the source knows them. Thread
+    /// safe.
+    std::optional<std::pair<double, double>> getPageRange(std::int64_t page) const;
 
     /// Bound on the bricks that are kept: 32 MiB.
     static constexpr std::size_t CACHE_BYTES = std::size_t(32) << 20;
@@ -133,9 +151,12 @@ private:
     ReportedStatus rebuildLayout(const glm::ivec3& brickSize, int overlap);
     void forgetBricks();
     BrickPtr findBrick(std::int64_t brick) const;
-    Block readBrick(const core::Box3i& samples, bool& shared, Status& status) const;
+    Status makeTree(const VoxelSource* source, int overlap, core::BrickTree& tree) const;
+    Block readBrick(int level, const core::Box3i& samples, bool& shared, Status& status) const;
     Block loadBrick(std::int64_t index, Brick& brick) const;
-    std::optional<std::pair<double, double>> knownRange(const core::Box3i& samples) const;
+    std::optional<std::pair<double, double>> knownRange(int level,
+                                                        const core::Box3i& samples) const;
+    core::ValueRange findCoarsestRange() const;
     void findRange() const;
 
     osg::ref_ptr<VoxelSource> _source;
@@ -143,6 +164,7 @@ private:
     glm::ivec3 _brickSize{256};
     int _overlap = 1;
     core::BrickLayout _layout;
+    core::BrickTree _tree;
     std::string _fileName, _filePath, _fileOptions;
     bool _explicitRange = false;
     mutable bool _rangeKnown = true;

@@ -81,6 +81,22 @@ void classifySamples(Volume& volume, const Grid& samples, Grid::Interpolation ho
     }
 }
 
+void Scene::addMesh(const std::vector<glm::vec3>& points,
+                    const std::vector<std::array<unsigned, 3>>& corners, const glm::dvec4& color,
+                    bool opaque)
+{
+    const int surface = triangles.empty() ? 1 : triangles.back().surface + 1;
+    for (const auto& numbers : corners) {
+        Triangle t;
+        for (std::size_t i = 0; i < 3; ++i)
+            t.corner[i] = glm::dvec3(points[numbers[i]]);
+        t.color = {color, color, color};
+        t.opaque = opaque;
+        t.surface = surface;
+        triangles.push_back(t);
+    }
+}
+
 void Scene::addQuad(const std::array<glm::dvec3, 4>& corners, const glm::dvec4& color, bool opaque)
 {
     const int surface = triangles.empty() ? 1 : triangles.back().surface + 1;

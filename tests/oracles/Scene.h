@@ -92,6 +92,10 @@ struct Scene
     /// better than 1e-9 (see SceneTest), which float pixels round to 6e-8.
     double tolerance = 1e-11;
 
+    /// A surface of triangles of one colour (straight RGBA); corners by their number.
+    void addMesh(const std::vector<glm::vec3>& points,
+                 const std::vector<std::array<unsigned, 3>>& corners, const glm::dvec4& color,
+                 bool opaque = false);
     /// Two triangles of one colour; corners in order.
     void addQuad(const std::array<glm::dvec3, 4>& corners, const glm::dvec4& color,
                  bool opaque = false);

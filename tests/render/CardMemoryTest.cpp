@@ -8,6 +8,7 @@
 #include <osgVolumizer/render/textures/BrickResidency.h>
 
 #include <support/GLTest.h>
+#include <support/Reports.h>
 
 #include <osg/Texture3D>
 
@@ -21,6 +22,7 @@ using namespace osgVolumizer::test;
 using render::AllocationRequest;
 using support::FloatImage;
 using support::RenderOptions;
+using support::Reports;
 using A = VolumeAppearance;
 
 namespace {
@@ -44,32 +46,6 @@ FloatImage separately(osg::Node* scene, const RenderOptions& options)
 {
     return support::renderScene(scene, support::joining(options, false));
 }
-
-// Collects what is reported.
-class Reports
-{
-public:
-    Reports() { setErrorHandler(_collect.get()); }
-    ~Reports() { setErrorHandler(nullptr); }
-    Reports(const Reports&) = delete;
-    Reports& operator=(const Reports&) = delete;
-    int count(const std::string& words) const
-    {
-        int found = 0;
-        for (const std::string& text : _collect->texts)
-            found += text.find(words) != std::string::npos;
-        return found;
-    }
-    std::size_t all() const { return _collect->texts.size(); }
-
-private:
-    struct Collect : ErrorHandler
-    {
-        void operator()(const Status& status) override { texts.push_back(status.text); }
-        std::vector<std::string> texts;
-    };
-    const osg::ref_ptr<Collect> _collect = new Collect;
-};
 
 class CardMemory : public support::GLTest
 {

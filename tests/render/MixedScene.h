@@ -74,17 +74,8 @@ public:
     /// To the oracle's scene only.
     void addTruth(const Mesh& mesh, const glm::dvec4& color, bool opaque = false)
     {
-        const int surface = _truth.triangles.empty() ? 1 : _truth.triangles.back().surface + 1;
-        const glm::dvec4 c{glm::vec4(color)};
-        for (const auto& t : mesh.triangles) {
-            oracle::Triangle triangle;
-            for (int i = 0; i < 3; ++i)
-                triangle.corner[i] = glm::dvec3(mesh.points[t[i]]);
-            triangle.color = {c, c, c};
-            triangle.opaque = opaque;
-            triangle.surface = surface;
-            _truth.triangles.push_back(triangle);
-        }
+        // As a float of GL's.
+        _truth.addMesh(mesh.points, mesh.triangles, glm::dvec4(glm::vec4(color)), opaque);
     }
     oracle::Scene& truth() { return _truth; }
 

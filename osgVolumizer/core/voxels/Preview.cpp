@@ -16,11 +16,11 @@ int multiple(int v, int step)
 
 } // namespace
 
-Preview::Preview(const glm::ivec3& volumeSize)
+Preview::Preview(const glm::ivec3& size, int spacing) : _spacing(spacing)
 {
-    const double samples = static_cast<double>(sampleCount(volumeSize));
+    const double samples = static_cast<double>(sampleCount(size));
     _step = std::max(1, static_cast<int>(std::ceil(std::cbrt(samples / 4194304.0))));
-    _size = (volumeSize + _step - 1) / _step;
+    _size = (size + _step - 1) / _step;
     _values.assign(static_cast<std::size_t>(sampleCount(_size)),
                    std::numeric_limits<float>::quiet_NaN());
 }

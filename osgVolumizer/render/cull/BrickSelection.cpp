@@ -3,6 +3,7 @@
 #include "../draw/RayFunctions.h"
 #include "../textures/BrickResidency.h"
 #include "BrickJoining.h"
+#include "PageSelection.h"
 
 #include <osgUtil/CullVisitor>
 
@@ -12,27 +13,6 @@ namespace osgVolumizer {
 namespace render {
 
 namespace {
-
-osg::BoundingBox objectBounds(const core::Box3d& box, const glm::dmat4& frameToObject)
-{
-    osg::BoundingBox result;
-    for (int i = 0; i < 8; ++i) {
-        const glm::dvec4 p = frameToObject * glm::dvec4(box.corner(i), 1.0);
-        result.expandBy(osg::Vec3d(p.x, p.y, p.z));
-    }
-    return result;
-}
-
-OccupancyQuery queryOf(const VolumeInstance& volume, const Voxels& voxels)
-{
-    const osg::Vec2d range = voxels.getRange();
-    OccupancyQuery query;
-    query.table = &volume.look->table;
-    query.cubic = volume.look->features.cubic;
-    query.isosurface = rowOf(volume.look->features.rayFunction).showsIsoValueOnly;
-    query.isoFraction = (volume.appearance->getIsoValue() - range.x()) / (range.y() - range.x());
-    return query;
-}
 
 // Cuts a brick down to where it shows something; false where that is nowhere.
 bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickResidency& textures,
@@ -81,6 +61,27 @@ float priorityOf(const core::Box3d& box, const VolumeInstance& volume)
 
 } // namespace
 
+osg::BoundingBox objectBounds(const core::Box3d& box, const glm::dmat4& frameToObject)
+{
+    osg::BoundingBox result;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec4 p = frameToObject * glm::dvec4(box.corner(i), 1.0);
+        result.expandBy(osg::Vec3d(p.x, p.y, p.z));
+    }
+    return result;
+}
+
+OccupancyQuery occupancyQuery(const VolumeInstance& volume, const Voxels& voxels)
+{
+    const osg::Vec2d range = voxels.getRange();
+    OccupancyQuery query;
+    query.table = &volume.look->table;
+    query.cubic = volume.look->features.cubic;
+    query.isosurface = rowOf(volume.look->features.rayFunction).showsIsoValueOnly;
+    query.isoFraction = (volume.appearance->getIsoValue() - range.x()) / (range.y() - range.x());
+    return query;
+}
+
 unsigned frameOf(const osgUtil::CullVisitor& visitor)
 {
     const osg::FrameStamp* stamp = visitor.getFrameStamp();
@@ -101,11 +102,12 @@ bool isWorthSkipping(const VolumeInstance& volume)
 void selectBricks(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& hooks,
                   osgUtil::CullVisitor& visitor)
 {
+    if (voxels.isPaged()) return selectPages(volume, voxels, visitor);
     const core::BrickLayout& layout = voxels.getLayout();
     const osg::ref_ptr<BrickResidency> textures = BrickResidency::of(voxels);
     const PreparedGeometry& prepared = *volume.prepared;
     const ProgramFeatures& features = volume.look->features;
-    const OccupancyQuery query = queryOf(volume, voxels);
+    const OccupancyQuery query = occupancyQuery(volume, voxels);
     const unsigned frame = frameOf(visitor);
     LeftOutBricks leftOut;
     for (std::int64_t i = 0; i < layout.brickCount(); ++i) {

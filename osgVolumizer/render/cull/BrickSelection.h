@@ -16,6 +16,11 @@ namespace render {
 void selectBricks(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& hooks,
                   osgUtil::CullVisitor& visitor);
 
+/// The box, moved to the object frame.
+osg::BoundingBox objectBounds(const core::Box3d& box, const glm::dmat4& frameToObject);
+/// What decides which values of a volume are shown.
+OccupancyQuery occupancyQuery(const VolumeInstance& volume, const Voxels& voxels);
+
 /// The number of the frame that is culled; 0 where the visitor knows none.
 unsigned frameOf(const osgUtil::CullVisitor& visitor);
 

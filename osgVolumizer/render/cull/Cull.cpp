@@ -53,7 +53,8 @@ bool passesOsgCulling(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
 void report(const VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
 {
     const std::pair<const char*, std::int64_t> values[] = {
-        {"osgVolumizer bricks total", voxels.getLayout().brickCount()},
+        {"osgVolumizer bricks total",
+         voxels.isPaged() ? voxels.getTree().brickCount() : voxels.getLayout().brickCount()},
         {"osgVolumizer bricks empty", volume.emptyBricks},
         {"osgVolumizer bricks homogeneous", volume.homogeneousBricks},
         {"osgVolumizer cells total", volume.cellCount},

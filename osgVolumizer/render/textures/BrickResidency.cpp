@@ -5,37 +5,10 @@
 
 #include "../../core/voxels/VoxelData.h"
 
-#include <algorithm>
-#include <tuple>
 #include <vector>
 
 namespace osgVolumizer {
 namespace render {
-
-namespace {
-
-// Releases textures in a context until those that are left have no more bytes than there is room
-// for.
-void keepWithin(std::int64_t room, const std::vector<osg::ref_ptr<ResidentTexture>>& textures,
-                osg::State& state)
-{
-    std::int64_t held = 0;
-    std::vector<std::tuple<unsigned, float, ResidentTexture*>> byUse;
-    for (const auto& texture : textures) {
-        if (!texture->isIn(state.getContextID())) continue;
-        held += texture->bytes();
-        byUse.emplace_back(texture->lastFrame(), texture->priority(), texture.get());
-    }
-    if (held <= room) return;
-    std::sort(byUse.begin(), byUse.end());
-    for (auto next = byUse.begin(); held > room && next != byUse.end(); ++next) {
-        ResidentTexture& texture = *std::get<2>(*next);
-        held -= texture.bytes();
-        texture.releaseGLObjects(&state);
-    }
-}
-
-} // namespace
 
 osg::ref_ptr<BrickResidency> BrickResidency::of(const Voxels& voxels)
 {
@@ -116,13 +89,7 @@ osg::ref_ptr<const osg::Image> BrickResidency::texel(const Voxels& voxels, std::
     }
     const auto range = voxels.getBrickRange(brick);
     if (!(range.first <= range.second)) return nullptr;
-    const std::vector<double> values(static_cast<std::size_t>(voxels.getComponents()), range.first);
-    auto texel = std::make_shared<std::vector<unsigned char>>(values.size() *
-                                                              voxelTypeSize(voxels.getType()));
-    core::convertVoxels(values.data(), VoxelType::FLOAT64, texel->data(), voxels.getType(),
-                        values.size());
-    const osg::ref_ptr<const osg::Image> image =
-        makeTexels(voxels, {texel, texel->data(), texel->size()}, glm::ivec3(1), gradients);
+    const osg::ref_ptr<const osg::Image> image = uniformTexel(voxels, range.first, gradients);
     std::lock_guard<std::mutex> lock(_mutex);
     _texels[{brick, gradients}] = {image, modified, layout};
     return image;
@@ -200,6 +167,18 @@ std::int64_t BrickResidency::bytes(unsigned contextId) const
     return sum;
 }
 
+std::shared_ptr<Pages> BrickResidency::pages(const Voxels& voxels)
+{
+    std::shared_ptr<Pages> pages;
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        if (!_pages) _pages = Pages::create();
+        pages = _pages;
+    }
+    pages->begin(voxels);
+    return pages;
+}
+
 void BrickResidency::resizeGLObjectBuffers(unsigned int maximum)
 {
     _cells.resizeGLObjectBuffers(maximum);
@@ -208,6 +187,7 @@ void BrickResidency::resizeGLObjectBuffers(unsigned int maximum)
         if (entry.second.texture) entry.second.texture->resizeGLObjectBuffers(maximum);
     for (auto& entry : _joined)
         entry.second.texture->resizeGLObjectBuffers(maximum);
+    if (_pages) _pages->resizeGLObjectBuffers(maximum);
 }
 
 void BrickResidency::releaseGLObjects(osg::State* state) const
@@ -218,6 +198,7 @@ void BrickResidency::releaseGLObjects(osg::State* state) const
         if (entry.second.texture) entry.second.texture->releaseGLObjects(state);
     for (const auto& entry : _joined)
         entry.second.texture->releaseGLObjects(state);
+    if (_pages) _pages->releaseGLObjects(state);
 }
 
 } // namespace render

@@ -3,6 +3,7 @@
 #include "BrickTexture.h"
 #include "CellCache.h"
 #include "JoinedTexture.h"
+#include "Pages.h"
 
 #include "../../Voxels.h"
 
@@ -82,6 +83,8 @@ public:
                   const ResidentTexture& texture);
 
     CellCache& cells() { return _cells; }
+    /// Those of voxels that are paged, in the present state of the data.
+    std::shared_ptr<Pages> pages(const Voxels& voxels);
 
     void resizeGLObjectBuffers(unsigned int maximum) override;
     void releaseGLObjects(osg::State* state) const override;
@@ -108,7 +111,8 @@ private:
 
     CellCache _cells;
     std::atomic<std::int64_t> _budget{UNLIMITED};
-    mutable std::mutex _mutex; ///< of what follows
+    mutable std::mutex _mutex;     ///< of what follows
+    std::shared_ptr<Pages> _pages; ///< null until asked for
     std::map<Key, Entry> _entries;
     std::map<Key, TexelEntry> _texels;
     std::map<bool, JoinedEntry> _joined;         ///< with and without gradients

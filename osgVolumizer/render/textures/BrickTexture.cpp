@@ -65,6 +65,16 @@ bool BrickTexture::isIn(unsigned contextId) const
     return copy->texture && copy->texture->getTextureObject(contextId);
 }
 
+bool BrickTexture::isAnywhere() const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& copy : _copies) {
+        std::lock_guard<std::mutex> copyLock(copy.second->mutex);
+        if (copy.second->texture && copy.second->texture->getTextureObject(copy.first)) return true;
+    }
+    return false;
+}
+
 CoarseTexture BrickTexture::apply(osg::RenderInfo& renderInfo, const ContextLimits& limits,
                                   const Load& load, unsigned unit)
 {

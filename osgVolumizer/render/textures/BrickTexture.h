@@ -37,6 +37,8 @@ public:
     CoarseTexture apply(osg::RenderInfo& renderInfo, const ContextLimits& limits, const Load& load,
                         unsigned unit);
     bool isIn(unsigned contextId) const override;
+    /// Whether any context has it.
+    bool isAnywhere() const;
     std::int64_t bytes() const override;
 
     void resizeGLObjectBuffers(unsigned int maximum) override;

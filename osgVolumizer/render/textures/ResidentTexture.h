@@ -2,9 +2,11 @@
 
 #include <osg/Referenced>
 #include <osg/State>
+#include <osg/ref_ptr>
 
 #include <atomic>
 #include <cstdint>
+#include <vector>
 
 namespace osgVolumizer {
 namespace render {
@@ -39,6 +41,13 @@ private:
     std::atomic<unsigned> _lastFrame{0};
     std::atomic<float> _priority{0.0f};
 };
+
+/// Releases textures in the context of a state until those that are left have no more bytes than
+/// there is room for: first those that no frame has asked for longest, and of the same frame the
+/// least important. Returns the bytes that are left.
+std::int64_t keepWithin(std::int64_t room,
+                        const std::vector<osg::ref_ptr<ResidentTexture>>& textures,
+                        osg::State& state);
 
 } // namespace render
 } // namespace osgVolumizer

@@ -144,6 +144,16 @@ osg::ref_ptr<osg::Image> makeTexels(const Voxels& voxels, const VoxelBlock& bloc
     return image;
 }
 
+osg::ref_ptr<osg::Image> uniformTexel(const Voxels& voxels, double value, bool gradients)
+{
+    const std::vector<double> values(static_cast<std::size_t>(voxels.getComponents()), value);
+    auto texel = std::make_shared<std::vector<unsigned char>>(values.size() *
+                                                              voxelTypeSize(voxels.getType()));
+    core::convertVoxels(values.data(), VoxelType::FLOAT64, texel->data(), voxels.getType(),
+                        values.size());
+    return makeTexels(voxels, {texel, texel->data(), texel->size()}, glm::ivec3(1), gradients);
+}
+
 void writeTexels(osg::State& state, const osg::Image& texels, const glm::ivec3& first,
                  const glm::ivec3& at, const glm::ivec3& size)
 {

@@ -14,6 +14,8 @@ namespace render {
 /// change.
 osg::ref_ptr<osg::Image> makeTexels(const Voxels& voxels, const VoxelBlock& block,
                                     const glm::ivec3& size, bool gradients);
+/// One texel that stands for samples that all have one value.
+osg::ref_ptr<osg::Image> uniformTexel(const Voxels& voxels, double value, bool gradients);
 /// Writes a box of a texture that is bound. \param first of the image's texels that are written
 void writeTexels(osg::State& state, const osg::Image& texels, const glm::ivec3& first,
                  const glm::ivec3& at, const glm::ivec3& size);

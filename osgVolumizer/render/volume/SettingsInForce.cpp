@@ -159,6 +159,11 @@ bool looksUpBefore(const VolumeAppearance& appearance, VolumeAppearance::RayFunc
 bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
                       Reasons& reasons)
 {
+    if (appearance.getVoxels()->isPaged()) {
+        reasons.push_back("an error tolerance needs voxels that fit into memory, not ones that are "
+                          "paged; the sampling period is used");
+        return false;
+    }
     Reasons ofOthers;
     const auto function = usedRayFunction(appearance, prepared, ofOthers);
     if (usesSlabs(appearance, prepared) && appearance.getVoxels()->getComponents() == 1 &&

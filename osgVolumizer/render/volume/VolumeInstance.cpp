@@ -56,7 +56,7 @@ void findDepths(VolumeInstance& volume, const core::View& view)
 // Puts the bricks in visibility order, far to near.
 void sortBricks(VolumeInstance& volume, const core::View& view)
 {
-    if (volume.bricks.size() < 2 || !volume.prepared->voxelFrame) return;
+    if (volume.sorted || volume.bricks.size() < 2 || !volume.prepared->voxelFrame) return;
     const Result<glm::dvec4> eye = core::eyePosition(view);
     if (!eye) return;
     std::vector<std::int64_t> order;
@@ -69,6 +69,7 @@ void sortBricks(VolumeInstance& volume, const core::View& view)
     volume.bricks.clear();
     for (std::int64_t index : order)
         volume.bricks.push_back(std::move(byIndex.at(index)));
+    volume.sorted = true;
 }
 
 } // namespace

@@ -29,6 +29,7 @@ struct VolumeInstance
     osg::ref_ptr<osg::RefMatrix> frameToEye; ///< model-view of the leaf
     osg::ref_ptr<VolumeDrawable> drawable; ///< of the leaf that stands for the volume until sorting
     std::vector<SelectedBrick> bricks;
+    bool sorted = false; ///< the bricks are in visibility order, far to near
     /// What selection found: bricks that show nothing, bricks of one value; cells in the boxes of
     /// the others, and those of them that show something.
     std::int64_t emptyBricks = 0, homogeneousBricks = 0, cellCount = 0, occupiedCells = 0;

@@ -70,9 +70,9 @@ public:
 
 private:
     Status makeProgram();
-    void makeVoxels(const ChartScene& scene);
-    void makeTable(const ChartScene& scene);
-    void makeBox(const ChartScene& scene);
+    void makeVoxels(const ChartVolume& volume);
+    void makeTable(const ChartVolume& volume);
+    void makeBox(const ChartVolume& volume);
     void makeTarget();
     void setRays(const ChartScene& scene);
     GLint uniform(const char* name) const { return glGetUniformLocation(_program, name); }
@@ -108,31 +108,31 @@ Status BareRenderer::makeProgram()
 }
 
 // As 32-bit floats whatever their type: exact filter weights, and the fastest there is on llvmpipe.
-void BareRenderer::makeVoxels(const ChartScene& scene)
+void BareRenderer::makeVoxels(const ChartVolume& volume)
 {
     std::vector<float> fractions;
-    for (double value : scene.values())
-        fractions.push_back(float((value - scene.range.x) / (scene.range.y - scene.range.x)));
+    for (double value : volume.values())
+        fractions.push_back(float((value - volume.range.x) / (volume.range.y - volume.range.x)));
     GLuint texture = 0;
     glGenTextures(1, &texture);
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_3D, texture);
-    const glm::ivec3 n = scene.size;
+    const glm::ivec3 n = volume.size;
     glTexImage3D(GL_TEXTURE_3D, 0, GL_R32F, n.x, n.y, n.z, 0, GL_RED, GL_FLOAT, fractions.data());
     for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
         glTexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
     for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
         glTexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
-    const glm::vec3 scale(1.0 / glm::dvec3(n)), offset((0.5 - scene.origin) / glm::dvec3(n));
+    const glm::vec3 scale(1.0 / glm::dvec3(n)), offset((0.5 - volume.origin) / glm::dvec3(n));
     glUniform1i(uniform("voxels"), 0);
     glUniform3fv(uniform("textureScale"), 1, glm::value_ptr(scale));
     glUniform3fv(uniform("textureOffset"), 1, glm::value_ptr(offset));
 }
 
-void BareRenderer::makeTable(const ChartScene& scene)
+void BareRenderer::makeTable(const ChartVolume& volume)
 {
     const std::vector<glm::vec4> texels =
-        tableTexels(*core::TransferFunction::create(scene.table), _integral);
+        tableTexels(*core::TransferFunction::create(volume.table), _integral);
     GLuint buffer = 0, texture = 0;
     glGenBuffers(1, &buffer);
     glBindBuffer(GL_TEXTURE_BUFFER, buffer);
@@ -161,9 +161,9 @@ void BareRenderer::makeTarget()
 }
 
 // The back faces of the box, so that each pixel is drawn once.
-void BareRenderer::makeBox(const ChartScene& scene)
+void BareRenderer::makeBox(const ChartVolume& volume)
 {
-    const glm::vec3 low(scene.boxMin()), high(scene.boxMax());
+    const glm::vec3 low(volume.boxMin()), high(volume.boxMax());
     const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                              {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     std::vector<glm::vec3> triangles;
@@ -222,6 +222,7 @@ void BareRenderer::setRays(const ChartScene& scene)
 Status BareRenderer::open(const ChartScene& scene)
 {
     if (scene.shaded) return Status(ErrorCode::NOT_SUPPORTED, "has no shading");
+    if (!scene.isOneVolume()) return Status(ErrorCode::NOT_SUPPORTED, "draws one volume");
     auto context = support::OffscreenContext::create();
     if (!context.ok()) return context.status;
     _context = std::move(*context);
@@ -230,10 +231,10 @@ Status BareRenderer::open(const ChartScene& scene)
     _height = scene.view.height;
     const Status status = makeProgram();
     if (status.ok()) {
-        makeVoxels(scene);
-        makeTable(scene);
+        makeVoxels(scene.volumes.front());
+        makeTable(scene.volumes.front());
         makeTarget();
-        makeBox(scene);
+        makeBox(scene.volumes.front());
         setRays(scene);
     }
     _context->release();

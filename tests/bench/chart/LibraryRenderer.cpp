@@ -1,5 +1,7 @@
 #include "Renderer.h"
 
+#include "MixedScene.h"
+
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/VolumeGeometry.h>
 
@@ -27,43 +29,33 @@ public:
 
     Status open(const ChartScene& scene) override
     {
-        VoxelSource::Description description;
-        description.size = scene.size;
-        description.type = scene.type;
-        description.origin = scene.origin;
-        _data = scene.voxels;
-        osg::ref_ptr<MemoryVoxelSource> source = new MemoryVoxelSource;
-        Status status = source->setExternal(description, _data.data());
-        if (!status.ok()) return status;
-        osg::ref_ptr<Voxels> voxels = new Voxels(source);
-        status = voxels->setRange(osg::Vec2d(scene.range.x, scene.range.y));
-        if (status.ok() && _options.brickSize)
-            status =
-                voxels->setBrickSize({_options.brickSize, _options.brickSize, _options.brickSize});
-        if (!status.ok()) return status;
-        osg::ref_ptr<LookupTable> table = new LookupTable;
-        status = table->setPoints(scene.table, LookupTable::RANGE_FRACTION);
-        if (!status.ok()) return status;
-
-        _appearance = new VolumeAppearance;
-        _appearance->setVoxels(voxels);
-        _appearance->setLookupTable(table);
-        _appearance->setTechnique(_options.slabs ? VolumeAppearance::SLABS
-                                                 : VolumeAppearance::SLICES);
-        _appearance->addChild(VolumeGeometry::createBox(*voxels));
-        _appearance->setShading(scene.shaded);
+        _scene = scene;
+        const osg::ref_ptr<osg::Group> root = new osg::Group;
+        for (ChartVolume& volume : _scene.volumes) {
+            const Status status = addVolume(volume, *root);
+            if (!status.ok()) return status;
+        }
+        for (const ChartSurface& surface : scene.surfaces)
+            root->addChild(test::makeGeometry(surface.mesh, surface.color));
         support::RenderOptions options = scene.view;
         options.light = scene.shaded;
         _renderer = std::make_unique<support::SceneRenderer>(
-            _appearance, support::joining(options, _options.joined));
+            root, support::joining(options, _options.joined));
         _renderer->viewer().getCamera()->getStats()->collectStats("rendering", true);
         _renderer->viewer().getViewerStats()->collectStats("update", true);
         return _renderer->status();
     }
     Status setStep(double stepVoxel) override
     {
-        if (_options.tolerance) return _appearance->setErrorTolerance(1e-3 * stepVoxel);
-        return _appearance->setSamplingPeriod(osg::Vec3d(stepVoxel, stepVoxel, stepVoxel));
+        Status status;
+        for (const auto& appearance : _appearances) {
+            status =
+                _options.tolerance
+                    ? appearance->setErrorTolerance(1e-3 * stepVoxel)
+                    : appearance->setSamplingPeriod(osg::Vec3d(stepVoxel, stepVoxel, stepVoxel));
+            if (!status.ok()) return status;
+        }
+        return status;
     }
     void frame() override { _renderer->viewer().frame(); }
     support::FloatImage picture() override { return _renderer->render(); }
@@ -83,9 +75,40 @@ public:
     }
 
 private:
+    Status addVolume(ChartVolume& volume, osg::Group& root)
+    {
+        VoxelSource::Description description;
+        description.size = volume.size;
+        description.type = volume.type;
+        description.origin = volume.origin;
+        osg::ref_ptr<MemoryVoxelSource> source = new MemoryVoxelSource;
+        Status status = source->setExternal(description, volume.voxels.data());
+        if (!status.ok()) return status;
+        osg::ref_ptr<Voxels> voxels = new Voxels(source);
+        status = voxels->setRange(osg::Vec2d(volume.range.x, volume.range.y));
+        if (status.ok() && _options.brickSize)
+            status =
+                voxels->setBrickSize({_options.brickSize, _options.brickSize, _options.brickSize});
+        if (!status.ok()) return status;
+        osg::ref_ptr<LookupTable> table = new LookupTable;
+        status = table->setPoints(volume.table, LookupTable::RANGE_FRACTION);
+        if (!status.ok()) return status;
+
+        const osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
+        appearance->setVoxels(voxels);
+        appearance->setLookupTable(table);
+        appearance->setTechnique(_options.slabs ? VolumeAppearance::SLABS
+                                                : VolumeAppearance::SLICES);
+        appearance->addChild(VolumeGeometry::createBox(*voxels));
+        appearance->setShading(_scene.shaded);
+        root.addChild(appearance);
+        _appearances.push_back(appearance);
+        return status;
+    }
+
     LibraryOptions _options;
-    std::vector<unsigned char> _data;
-    osg::ref_ptr<VolumeAppearance> _appearance;
+    ChartScene _scene; ///< whose voxels the sources look at
+    std::vector<osg::ref_ptr<VolumeAppearance>> _appearances;
     std::unique_ptr<support::SceneRenderer> _renderer;
 };
 

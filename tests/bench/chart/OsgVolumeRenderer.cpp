@@ -1,3 +1,4 @@
+#include "MixedScene.h"
 #include "Renderer.h"
 
 #include <osg/BlendFunc>
@@ -39,25 +40,19 @@ osg::Matrixd boxMatrix(const glm::dvec3& low, const glm::dvec3& high)
            osg::Matrixd::translate(low.x, low.y, low.z);
 }
 
-/// osgVolume with what makes it most accurate: tables of 32-bit floats, the alpha of one step in
-/// the table (the techniques know no opacity unit, or one that holds for steps below a voxel only),
-/// no alpha test, the blend function that its shaders' output asks for, no lighting, voxels in
-/// their own precision. Not corrected: the techniques' own quadrature.
-class OsgVolumeRenderer : public Renderer
+/// One volume of a scene as a tile: see OsgVolumeRenderer.
+class Tile
 {
 public:
-    explicit OsgVolumeRenderer(OsgVolumeTechnique technique) : _technique(technique) {}
-
-    std::string name() const override
+    Tile(const ChartVolume& volume, OsgVolumeTechnique technique, bool shaded)
+        : _volume(volume), _technique(technique), _shaded(shaded),
+          // The shaders measure lengths in texture coordinates, which only a cube makes isotropic.
+          _side(std::max({volume.size.x, volume.size.y, volume.size.z}))
     {
-        return _technique == OsgVolumeTechnique::FIXED_FUNCTION ? "osgVolume FixedFunction"
-               : _technique == OsgVolumeTechnique::RAY_TRACED   ? "osgVolume RayTraced"
-                                                                : "osgVolume Multipass";
     }
-    Status open(const ChartScene& scene) override;
-    Status setStep(double stepVoxel) override;
-    void frame() override { _renderer->viewer().frame(); }
-    support::FloatImage picture() override;
+
+    Status open();
+    osg::ref_ptr<osg::Node> makeNode(double stepVoxel) const;
 
 private:
     bool fixedFunction() const { return _technique == OsgVolumeTechnique::FIXED_FUNCTION; }
@@ -67,49 +62,28 @@ private:
     glm::dvec4 colorOfStep(double fraction, double stepVoxel) const;
     osg::ref_ptr<osgVolume::Property> properties(double stepVoxel) const;
     osg::ref_ptr<osgVolume::VolumeTechnique> makeTechnique(double stepVoxel) const;
-    osg::ref_ptr<osg::Node> makeNode(double stepVoxel);
 
+    ChartVolume _volume;
     OsgVolumeTechnique _technique;
-    ChartScene _scene;
+    bool _shaded;
+    int _side; ///< samples along each axis of the image
     core::TransferFunction _function;
     osg::ref_ptr<osg::Image> _voxels;
-    osg::ref_ptr<osg::Group> _root;
-    std::unique_ptr<support::SceneRenderer> _renderer;
-    int _side = 0; ///< samples along each axis of the image
 };
 
-Status OsgVolumeRenderer::open(const ChartScene& scene)
+Status Tile::open()
 {
-    if (scene.shaded && fixedFunction()) return Status(ErrorCode::NOT_SUPPORTED, "has no shading");
-    if (_technique == OsgVolumeTechnique::RAY_TRACED && scene.view.projection(3, 3) != 0.0)
-        return Status(
-            ErrorCode::NOT_SUPPORTED,
-            "casts perspective rays in orthographic views: its rays all start at the eye");
-    _scene = scene;
-    const auto function = core::TransferFunction::create(scene.table);
+    const auto function = core::TransferFunction::create(_volume.table);
     if (!function.ok()) return function.status;
     _function = *function;
-    // The shaders measure lengths in texture coordinates, which only a cube makes isotropic.
-    _side = std::max({scene.size.x, scene.size.y, scene.size.z});
     if (!fixedFunction()) _voxels = voxelImage();
-    _root = new osg::Group;
-    osg::StateSet* state = _root->getOrCreateStateSet();
-    state->setMode(GL_LIGHTING, osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
-    // The ray shaders write premultiplied colours.
-    if (!fixedFunction())
-        state->setAttributeAndModes(
-            new osg::BlendFunc(osg::BlendFunc::ONE, osg::BlendFunc::ONE_MINUS_SRC_ALPHA),
-            osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE);
-    support::RenderOptions options = scene.view;
-    options.light = scene.shaded;
-    _renderer = std::make_unique<support::SceneRenderer>(_root, options);
-    return _renderer->status();
+    return {};
 }
 
 // The voxels in the corner of a cube.
-osg::ref_ptr<osg::Image> OsgVolumeRenderer::voxelImage() const
+osg::ref_ptr<osg::Image> Tile::voxelImage() const
 {
-    const bool bytes = _scene.type == VoxelType::UINT8, shorts = _scene.type == VoxelType::UINT16;
+    const bool bytes = _volume.type == VoxelType::UINT8, shorts = _volume.type == VoxelType::UINT16;
     const GLenum type = bytes ? GL_UNSIGNED_BYTE : shorts ? GL_UNSIGNED_SHORT : GL_FLOAT;
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(_side, _side, _side, GL_RED, type, 1);
@@ -117,17 +91,17 @@ osg::ref_ptr<osg::Image> OsgVolumeRenderer::voxelImage() const
                                     : shorts ? GL_INTENSITY16
                                              : GL_INTENSITY32F_ARB);
     std::memset(image->data(), 0, image->getTotalSizeInBytes());
-    const glm::ivec3 n = _scene.size;
-    const std::size_t row = std::size_t(n.x) * voxelTypeSize(_scene.type);
+    const glm::ivec3 n = _volume.size;
+    const std::size_t row = std::size_t(n.x) * voxelTypeSize(_volume.type);
     for (int z = 0; z < n.z; ++z)
         for (int y = 0; y < n.y; ++y)
             std::memcpy(image->data(0, y, z),
-                        _scene.voxels.data() + (std::size_t(z) * n.y + std::size_t(y)) * row, row);
+                        _volume.voxels.data() + (std::size_t(z) * n.y + std::size_t(y)) * row, row);
     return image;
 }
 
 // Straight colour, opacity of one step.
-glm::dvec4 OsgVolumeRenderer::colorOfStep(double fraction, double stepVoxel) const
+glm::dvec4 Tile::colorOfStep(double fraction, double stepVoxel) const
 {
     glm::dvec4 c = _function.evaluate(fraction);
     c.a = core::opacityFromExtinction(core::extinctionFromOpacity(c.a), stepVoxel);
@@ -135,15 +109,15 @@ glm::dvec4 OsgVolumeRenderer::colorOfStep(double fraction, double stepVoxel) con
 }
 
 // FixedFunction knows no table: colours are looked up before interpolation, which is 'nearest'.
-osg::ref_ptr<osg::Image> OsgVolumeRenderer::classifiedImage(double stepVoxel) const
+osg::ref_ptr<osg::Image> Tile::classifiedImage(double stepVoxel) const
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
-    const glm::ivec3 n = _scene.size;
+    const glm::ivec3 n = _volume.size;
     image->allocateImage(n.x, n.y, n.z, GL_RGBA, GL_FLOAT, 1);
     image->setInternalTextureFormat(GL_RGBA32F_ARB);
     float* out = reinterpret_cast<float*>(image->data());
-    for (double value : _scene.values()) {
-        const double fraction = (value - _scene.range.x) / (_scene.range.y - _scene.range.x);
+    for (double value : _volume.values()) {
+        const double fraction = (value - _volume.range.x) / (_volume.range.y - _volume.range.x);
         const glm::vec4 c(colorOfStep(fraction, stepVoxel));
         for (int k = 0; k < 4; ++k)
             *out++ = c[k];
@@ -151,7 +125,7 @@ osg::ref_ptr<osg::Image> OsgVolumeRenderer::classifiedImage(double stepVoxel) co
     return image;
 }
 
-osg::ref_ptr<osg::TransferFunction1D> OsgVolumeRenderer::transferFunction(double stepVoxel) const
+osg::ref_ptr<osg::TransferFunction1D> Tile::transferFunction(double stepVoxel) const
 {
     osg::ref_ptr<osg::TransferFunction1D> tf = new osg::TransferFunction1D;
     tf->allocate(TABLE_SIZE);
@@ -171,13 +145,13 @@ osg::ref_ptr<osg::TransferFunction1D> OsgVolumeRenderer::transferFunction(double
     return tf;
 }
 
-osg::ref_ptr<osgVolume::Property> OsgVolumeRenderer::properties(double stepVoxel) const
+osg::ref_ptr<osgVolume::Property> Tile::properties(double stepVoxel) const
 {
     osg::ref_ptr<osgVolume::CompositeProperty> all = new osgVolume::CompositeProperty;
     all->addProperty(new osgVolume::AlphaFuncProperty(0.0f));
     if (fixedFunction()) return all;
     all->addProperty(new osgVolume::TransparencyProperty(1.0f));
-    if (_scene.shaded) all->addProperty(new osgVolume::LightingProperty);
+    if (_shaded) all->addProperty(new osgVolume::LightingProperty);
     double tableStep = stepVoxel;
     if (_technique == OsgVolumeTechnique::MULTIPASS) {
         // Corrects the opacity itself for steps below one voxel, and not above.
@@ -190,43 +164,115 @@ osg::ref_ptr<osgVolume::Property> OsgVolumeRenderer::properties(double stepVoxel
     return all;
 }
 
-osg::ref_ptr<osgVolume::VolumeTechnique> OsgVolumeRenderer::makeTechnique(double stepVoxel) const
+osg::ref_ptr<osgVolume::VolumeTechnique> Tile::makeTechnique(double stepVoxel) const
 {
     if (_technique == OsgVolumeTechnique::RAY_TRACED) return new osgVolume::RayTracedTechnique;
     if (_technique == OsgVolumeTechnique::MULTIPASS) return new osgVolume::MultipassTechnique;
     osg::ref_ptr<osgVolume::FixedFunctionTechnique> technique =
         new osgVolume::FixedFunctionTechnique;
-    const double diagonal = glm::length(glm::dvec3(_scene.size));
+    const double diagonal = glm::length(glm::dvec3(_volume.size));
     technique->setNumSlices(unsigned(std::lround(diagonal / stepVoxel)) + 1u);
     return technique;
 }
 
-osg::ref_ptr<osg::Node> OsgVolumeRenderer::makeNode(double stepVoxel)
+osg::ref_ptr<osg::Node> Tile::makeNode(double stepVoxel) const
 {
-    const glm::dvec3 texels = fixedFunction() ? glm::dvec3(_scene.size) : glm::dvec3(_side);
+    const glm::dvec3 texels = fixedFunction() ? glm::dvec3(_volume.size) : glm::dvec3(_side);
     osg::ref_ptr<osgVolume::ImageLayer> layer = new osgVolume::ImageLayer(
         fixedFunction() ? classifiedImage(stepVoxel).get() : _voxels.get());
     // Images span whole texels, the volume the samples at their centres.
     osg::ref_ptr<osgVolume::Locator> imageBox =
-        new osgVolume::Locator(boxMatrix(_scene.origin - 0.5, _scene.origin + texels - 0.5));
+        new osgVolume::Locator(boxMatrix(_volume.origin - 0.5, _volume.origin + texels - 0.5));
     osg::ref_ptr<osgVolume::Locator> sampleBox =
-        new osgVolume::Locator(boxMatrix(_scene.boxMin(), _scene.boxMax()));
+        new osgVolume::Locator(boxMatrix(_volume.boxMin(), _volume.boxMax()));
     layer->setLocator(imageBox);
     layer->addProperty(properties(stepVoxel));
     osg::ref_ptr<osgVolume::VolumeTile> tile = new osgVolume::VolumeTile;
     tile->setLocator(fixedFunction() ? imageBox.get() : sampleBox.get());
     tile->setLayer(layer);
     tile->setVolumeTechnique(makeTechnique(stepVoxel));
-    if (_technique != OsgVolumeTechnique::MULTIPASS) return tile;
-    osg::ref_ptr<osgVolume::VolumeScene> scene = new osgVolume::VolumeScene;
-    scene->addChild(tile);
-    return scene;
+    return tile;
+}
+
+/// osgVolume with what makes it most accurate: tables of 32-bit floats, the alpha of one step in
+/// the table (the techniques know no opacity unit, or one that holds for steps below a voxel only),
+/// no alpha test, the blend function that its shaders' output asks for, no lighting, voxels in
+/// their own precision. Not corrected: the techniques' own quadrature, and that volumes and
+/// translucent surfaces are drawn one after the other.
+class OsgVolumeRenderer : public Renderer
+{
+public:
+    explicit OsgVolumeRenderer(OsgVolumeTechnique technique) : _technique(technique) {}
+
+    std::string name() const override
+    {
+        return _technique == OsgVolumeTechnique::FIXED_FUNCTION ? "osgVolume FixedFunction"
+               : _technique == OsgVolumeTechnique::RAY_TRACED   ? "osgVolume RayTraced"
+                                                                : "osgVolume Multipass";
+    }
+    Status open(const ChartScene& scene) override;
+    Status setStep(double stepVoxel) override;
+    void frame() override { _renderer->viewer().frame(); }
+    support::FloatImage picture() override;
+
+private:
+    Status check(const ChartScene& scene) const;
+
+    OsgVolumeTechnique _technique;
+    std::vector<Tile> _tiles;
+    osg::ref_ptr<osg::Group> _volumes;
+    std::unique_ptr<support::SceneRenderer> _renderer;
+};
+
+Status OsgVolumeRenderer::check(const ChartScene& scene) const
+{
+    const auto refuse = [](const char* why) { return Status(ErrorCode::NOT_SUPPORTED, why); };
+    if (scene.shaded && _technique == OsgVolumeTechnique::FIXED_FUNCTION)
+        return refuse("has no shading");
+    if (_technique == OsgVolumeTechnique::RAY_TRACED && scene.view.projection(3, 3) != 0.0)
+        return refuse(
+            "casts perspective rays in orthographic views: its rays all start at the eye");
+    if (_technique == OsgVolumeTechnique::MULTIPASS && !scene.isOneVolume())
+        return refuse("multiplies by alpha twice, which can be taken back for one volume only");
+    return {};
+}
+
+Status OsgVolumeRenderer::open(const ChartScene& scene)
+{
+    const Status status = check(scene);
+    if (!status.ok()) return status;
+    for (const ChartVolume& volume : scene.volumes) {
+        _tiles.emplace_back(volume, _technique, scene.shaded);
+        const Status opened = _tiles.back().open();
+        if (!opened.ok()) return opened;
+    }
+    const osg::ref_ptr<osg::Group> root = new osg::Group;
+    _volumes = new osg::Group;
+    root->addChild(_volumes);
+    for (const ChartSurface& surface : scene.surfaces)
+        root->addChild(test::makeGeometry(surface.mesh, surface.color));
+    osg::StateSet* state = _volumes->getOrCreateStateSet();
+    state->setMode(GL_LIGHTING, osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
+    // The ray shaders write premultiplied colours.
+    if (_technique != OsgVolumeTechnique::FIXED_FUNCTION)
+        state->setAttributeAndModes(
+            new osg::BlendFunc(osg::BlendFunc::ONE, osg::BlendFunc::ONE_MINUS_SRC_ALPHA),
+            osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE);
+    support::RenderOptions options = scene.view;
+    options.light = scene.shaded;
+    _renderer = std::make_unique<support::SceneRenderer>(root, options);
+    return _renderer->status();
 }
 
 Status OsgVolumeRenderer::setStep(double stepVoxel)
 {
-    _root->removeChildren(0, _root->getNumChildren());
-    _root->addChild(makeNode(stepVoxel));
+    // A new VolumeScene too: one remembers tiles that have gone.
+    const bool multipass = _technique == OsgVolumeTechnique::MULTIPASS;
+    const osg::ref_ptr<osg::Group> scene = multipass ? new osgVolume::VolumeScene : new osg::Group;
+    for (const Tile& tile : _tiles)
+        scene->addChild(tile.makeNode(stepVoxel));
+    _volumes->removeChildren(0, _volumes->getNumChildren());
+    _volumes->addChild(scene);
     return {};
 }
 

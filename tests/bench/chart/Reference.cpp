@@ -19,10 +19,16 @@ constexpr double TOLERANCE = 1e-9;
 
 oracle::Scene oracleScene(const ChartScene& scene)
 {
-    const auto grid = std::make_shared<oracle::Grid>(scene.size, scene.values());
     oracle::Scene result;
-    result.volumes.push_back(oracle::voxelVolume(
-        grid, scene.size, oracle::Table(scene.table, scene.range), glm::dvec3(1.0), scene.origin));
+    for (const ChartVolume& volume : scene.volumes) {
+        const auto grid = std::make_shared<oracle::Grid>(volume.size, volume.values());
+        result.volumes.push_back(oracle::voxelVolume(grid, volume.size,
+                                                     oracle::Table(volume.table, volume.range),
+                                                     glm::dvec3(1.0), volume.origin));
+    }
+    for (const ChartSurface& surface : scene.surfaces)
+        result.addMesh(surface.mesh.points, surface.mesh.triangles,
+                       glm::dvec4(glm::vec4(surface.color)));
     result.tolerance = TOLERANCE;
     return result;
 }
@@ -30,13 +36,23 @@ oracle::Scene oracleScene(const ChartScene& scene)
 // Changes with everything that the picture depends on.
 std::string key(const ChartScene& scene)
 {
-    std::string bytes(scene.voxels.begin(), scene.voxels.end());
+    std::string bytes;
     const auto append = [&bytes](const void* data, std::size_t size) {
         bytes.append(static_cast<const char*>(data), size);
     };
-    append(scene.table.data(), scene.table.size() * sizeof(scene.table[0]));
-    append(&scene.size, sizeof(scene.size));
-    append(&scene.origin, sizeof(scene.origin));
+    const auto appendAll = [&append](const auto& items) {
+        append(items.data(), items.size() * sizeof(items[0]));
+    };
+    for (const ChartVolume& volume : scene.volumes) {
+        appendAll(volume.voxels);
+        appendAll(volume.table);
+        append(&volume.size, sizeof(volume.size));
+        append(&volume.origin, sizeof(volume.origin));
+    }
+    for (const ChartSurface& surface : scene.surfaces) {
+        appendAll(surface.mesh.points);
+        append(&surface.color, sizeof(surface.color));
+    }
     append(scene.view.view.ptr(), 16 * sizeof(double));
     append(scene.view.projection.ptr(), 16 * sizeof(double));
     append(&scene.view.width, sizeof(int));

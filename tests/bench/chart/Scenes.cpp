@@ -18,25 +18,31 @@ using ScalarFunction = std::function<double(const glm::dvec3&)>;
 
 constexpr int SIZE = 128;
 
-// Function of the voxel coordinate with values in [0, 1], stored over the whole range of the type.
-void fill(ChartScene& scene, const ScalarFunction& f)
+// Function of the object coordinate with values in [0, 1], stored over the whole range of the type.
+ChartVolume makeVolume(const glm::ivec3& size, const glm::dvec3& origin, VoxelType type,
+                       const ScalarFunction& f, const Points& table)
 {
-    const double top = scene.type == VoxelType::UINT8    ? 255.0
-                       : scene.type == VoxelType::UINT16 ? 65535.0
-                                                         : 1.0;
+    ChartVolume volume;
+    volume.size = size;
+    volume.origin = origin;
+    volume.type = type;
+    volume.table = table;
+    const double top = type == VoxelType::UINT8 ? 255.0 : type == VoxelType::UINT16 ? 65535.0 : 1.0;
     std::vector<double> values;
-    for (int z = 0; z < scene.size.z; ++z)
-        for (int y = 0; y < scene.size.y; ++y)
-            for (int x = 0; x < scene.size.x; ++x)
-                values.push_back(top * f(scene.origin + glm::dvec3(x, y, z)));
-    scene.voxels = oracle::fromDoubles(values, scene.type);
-    scene.range = {0.0, top};
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x)
+                values.push_back(top * f(origin + glm::dvec3(x, y, z)));
+    volume.voxels = oracle::fromDoubles(values, type);
+    volume.range = {0.0, top};
+    return volume;
 }
 
-double marschnerLobb(const glm::dvec3& voxel)
+// The test signal over a cube of `size` samples.
+double marschnerLobb(const glm::dvec3& voxel, int size = SIZE)
 {
     static const oracle::MarschnerLobbField field;
-    return field.value(voxel * (2.0 / (SIZE - 1)) - 1.0);
+    return field.value(voxel * (2.0 / (size - 1)) - 1.0);
 }
 
 // One in the middle, exactly zero from 24 voxels on, and smooth between.
@@ -69,125 +75,158 @@ Points peakTable()
             {1.0, {blue, 0.0}}};
 }
 
-// The same view of the 128^3 box for whatever part of it has voxels.
-void setView(ChartScene& scene, bool perspective, int pixels)
+// By default of the 128^3 box, for whatever part of it has voxels.
+void setView(ChartScene& scene, bool perspective, int pixels,
+             const osg::Vec3d& center = {63.5, 63.5, 63.5}, double distance = 330.0)
 {
-    const osg::Vec3d center(63.5, 63.5, 63.5), direction(0.42, 0.76, -0.5);
+    const osg::Vec3d direction(0.42, 0.76, -0.5);
     scene.view.size(pixels, pixels);
     if (perspective)
         scene.view.perspective(40.0);
     else
         scene.view.orthographic(112.0);
-    scene.view.lookAt(center - direction * 330.0, center, {0.0, 0.0, 1.0});
+    scene.view.lookAt(center - direction * distance, center, {0.0, 0.0, 1.0});
 }
 
-ChartScene synthetic(const std::string& name, const std::string& description, VoxelType type,
-                     const ScalarFunction& f, const Points& table)
+ChartScene synthetic(ChartVolume volume, bool perspective = true, int pixels = 512)
 {
     ChartScene scene;
-    scene.name = name;
-    scene.description = description;
-    scene.size = glm::ivec3(SIZE);
-    scene.type = type;
-    scene.table = table;
-    fill(scene, f);
-    setView(scene, true, 512);
+    scene.volumes.push_back(std::move(volume));
+    setView(scene, perspective, pixels);
     return scene;
 }
 
-ChartScene tightBlob()
+ChartVolume marschnerLobbVolume(VoxelType type, const Points& table)
 {
+    return makeVolume(
+        glm::ivec3(SIZE), glm::dvec3(0.0), type,
+        [](const glm::dvec3& p) { return marschnerLobb(p); }, table);
+}
+
+// The test signal twice as fine, from twice as far.
+ChartScene large()
+{
+    constexpr int size = 2 * SIZE;
     ChartScene scene;
-    scene.name = "blob-tight";
-    scene.description = "the same blob in a tight box of 50^3 samples";
-    scene.size = glm::ivec3(50);
-    scene.origin = glm::dvec3(39.0);
-    scene.type = VoxelType::FLOAT32;
-    scene.table = smoothTable(0.3);
-    fill(scene, blob);
-    setView(scene, true, 512);
+    scene.volumes.push_back(makeVolume(
+        glm::ivec3(size), glm::dvec3(0.0), VoxelType::FLOAT32,
+        [](const glm::dvec3& p) { return marschnerLobb(p, size); }, smoothTable(0.03)));
+    setView(scene, true, 1024, {127.5, 127.5, 127.5}, 660.0);
+    return scene;
+}
+
+// The test signal in two boxes that share about half of their space, in other colours.
+ChartScene overlapping()
+{
+    ChartScene scene = synthetic(marschnerLobbVolume(VoxelType::FLOAT32, smoothTable(0.04)));
+    Points table = smoothTable(0.04);
+    for (auto& point : table)
+        point.color = {point.color.b, point.color.r, point.color.g, point.color.a};
+    const glm::dvec3 origin(28.5, -20.25, 16.75);
+    scene.volumes.push_back(makeVolume(
+        glm::ivec3(SIZE), origin, VoxelType::FLOAT32,
+        [&origin](const glm::dvec3& p) { return 1.0 - marschnerLobb(p - origin); }, table));
+    const glm::dvec3 center = 63.5 + 0.5 * origin;
+    setView(scene, true, 512, {center.x, center.y, center.z}, 370.0);
+    return scene;
+}
+
+ChartScene withSpheres()
+{
+    ChartScene scene = synthetic(marschnerLobbVolume(VoxelType::FLOAT32, smoothTable(0.06)));
+    const auto add = [&scene](const glm::dvec3& center, double radius, const glm::dvec4& color) {
+        scene.surfaces.push_back({test::sphereMesh(center, radius, 100, 51), color});
+    };
+    add({44, 50, 60}, 24, {0.2, 0.9, 0.3, 0.4});
+    add({80, 70, 64}, 28, {0.9, 0.3, 0.2, 0.4});
+    add({64, 64, 90}, 20, {0.2, 0.4, 0.9, 0.4});
     return scene;
 }
 
 // The MR scan that the library ships, as its own scene file shows it.
-ChartScene head(const std::string& name, bool shaded)
+ChartScene head(bool shaded)
 {
     ChartScene scene;
-    scene.name = name;
-    scene.description = shaded ? "MR head, shaded" : "MR head";
     scene.shaded = shaded;
     const std::string folder = OSGVOLUMIZER_SOURCE_DIR "/data/";
     const auto voxels = readVoxels(folder + "head.tif");
     const auto table = readLookupTable(folder + "head.lut");
     if (!voxels.ok() || !table.ok()) {
-        std::cerr << name << ": " << (voxels.ok() ? table.status.text : voxels.status.text) << "\n";
+        std::cerr << (voxels.ok() ? table.status.text : voxels.status.text) << "\n";
         return scene;
     }
-    scene.size = (*voxels)->getLayout().size();
-    scene.type = (*voxels)->getType();
+    ChartVolume volume;
+    volume.size = (*voxels)->getLayout().size();
+    volume.type = (*voxels)->getType();
     const VoxelBlock block = (*voxels)->getBrick(0);
-    scene.voxels.assign(block.data, block.data + block.bytes);
-    scene.range = {0.0, 255.0};
-    scene.table = (*table)->getNormalizedFunction(osg::Vec2d(0.0, 255.0))->points();
+    volume.voxels.assign(block.data, block.data + block.bytes);
+    volume.range = {0.0, 255.0};
+    volume.table = (*table)->getNormalizedFunction(osg::Vec2d(0.0, 255.0))->points();
+    scene.volumes.push_back(std::move(volume));
     const osg::Vec3d center(63.5, 63.5, 41.5), direction(0.64, 0.12, 0.76);
     scene.view.size(512, 512).perspective(30.0);
     scene.view.lookAt(center - direction * 330.0, center, {0.0, -1.0, 0.0});
     return scene;
 }
 
-using Maker = std::function<ChartScene()>;
-
-std::vector<std::pair<std::string, Maker>> makers()
+struct Entry
 {
-    const auto field = [](const char* text, VoxelType type, const ScalarFunction& f,
-                          const Points& table, bool perspective = true, int pixels = 512) {
-        return [=](const std::string& name) {
-            ChartScene scene = synthetic(name, text, type, f, table);
-            setView(scene, perspective, pixels);
-            return scene;
+    const char* name;
+    const char* description;
+    std::function<ChartScene()> make;
+};
+
+std::vector<Entry> entries()
+{
+    const VoxelType f = VoxelType::FLOAT32;
+    const auto field = [](VoxelType type, const Points& table, bool perspective = true,
+                          int pixels = 512) {
+        return [=] { return synthetic(marschnerLobbVolume(type, table), perspective, pixels); };
+    };
+    const auto blobOf = [](int size, double origin) {
+        return [=] {
+            return synthetic(makeVolume(glm::ivec3(size), glm::dvec3(origin), VoxelType::FLOAT32,
+                                        blob, smoothTable(0.3)));
         };
     };
-    const VoxelType f = VoxelType::FLOAT32;
     const Points smooth = smoothTable(0.06);
-    const std::vector<std::pair<std::string, std::function<ChartScene(const std::string&)>>> list =
-        {
-            {"smooth", field("smooth table, float voxels fill the box", f, marschnerLobb, smooth)},
-            {"smooth-8bit",
-             field("the same, 8-bit voxels", VoxelType::UINT8, marschnerLobb, smooth)},
-            {"smooth-16bit",
-             field("the same, 16-bit voxels", VoxelType::UINT16, marschnerLobb, smooth)},
-            {"smooth-ortho", field("the same, orthographic", f, marschnerLobb, smooth, false)},
-            {"smooth-1024", field("the same, 1024 x 1024", f, marschnerLobb, smooth, true, 1024)},
-            {"blob", field("blob with empty borders", f, blob, smoothTable(0.3))},
-            {"blob-tight", [](const std::string&) { return tightBlob(); }},
-            {"peak", field("sharp peak in the table", f, marschnerLobb, peakTable())},
-            {"opaque", field("near-opaque", f, marschnerLobb, smoothTable(0.9))},
-            {"head", [](const std::string& name) { return head(name, false); }},
-            {"head-shaded", [](const std::string& name) { return head(name, true); }},
-        };
-    std::vector<std::pair<std::string, Maker>> result;
-    for (const auto& entry : list)
-        result.emplace_back(entry.first, [entry] { return entry.second(entry.first); });
-    return result;
+    return {
+        {"smooth", "smooth table, float voxels fill the box", field(f, smooth)},
+        {"smooth-8bit", "the same, 8-bit voxels", field(VoxelType::UINT8, smooth)},
+        {"smooth-16bit", "the same, 16-bit voxels", field(VoxelType::UINT16, smooth)},
+        {"smooth-ortho", "the same, orthographic", field(f, smooth, false)},
+        {"smooth-1024", "the same, 1024 x 1024", field(f, smooth, true, 1024)},
+        {"smooth-256", "256^3 voxels, 1024 x 1024", large},
+        {"blob", "blob with empty borders", blobOf(SIZE, 0.0)},
+        {"blob-tight", "the same blob in a tight box of 50^3 samples", blobOf(50, 39.0)},
+        {"peak", "sharp peak in the table", field(f, peakTable())},
+        {"opaque", "near-opaque", field(f, smoothTable(0.9))},
+        {"two-volumes", "two volumes that overlap", overlapping},
+        {"spheres", "three translucent spheres inside", withSpheres},
+        {"head", "MR head", [] { return head(false); }},
+        {"head-shaded", "MR head, shaded", [] { return head(true); }},
+    };
 }
 
 } // namespace
 
-std::vector<double> ChartScene::values() const
+std::vector<double> ChartVolume::values() const
 {
-    const std::size_t count = std::size_t(size.x) * size.y * size.z;
+    const std::size_t count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
     return oracle::toDoubles(voxels.data(), count, type);
 }
 
 std::vector<ChartScene> chartScenes(const std::vector<std::string>& filters)
 {
     std::vector<ChartScene> scenes;
-    for (const auto& maker : makers()) {
+    for (const Entry& entry : entries()) {
         const bool wanted = filters.empty() ||
-                            std::find(filters.begin(), filters.end(), maker.first) != filters.end();
+                            std::find(filters.begin(), filters.end(), entry.name) != filters.end();
         if (!wanted) continue;
-        ChartScene scene = maker.second();
-        if (!scene.voxels.empty()) scenes.push_back(std::move(scene));
+        ChartScene scene = entry.make();
+        scene.name = entry.name;
+        scene.description = entry.description;
+        if (!scene.volumes.empty()) scenes.push_back(std::move(scene));
     }
     return scenes;
 }

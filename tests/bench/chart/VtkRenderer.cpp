@@ -1,16 +1,23 @@
 #include "VtkRenderer.h"
 
+#include <vtkActor.h>
 #include <vtkCamera.h>
+#include <vtkCellArray.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkFixedPointVolumeRayCastMapper.h>
 #include <vtkGPUVolumeRayCastMapper.h>
 #include <vtkImageData.h>
 #include <vtkLight.h>
+#include <vtkMultiVolume.h>
 #include <vtkNew.h>
 #include <vtkOpenGLFramebufferObject.h>
 #include <vtkOpenGLRenderWindow.h>
 #include <vtkOpenGLState.h>
 #include <vtkPiecewiseFunction.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
 #include <vtkRenderer.h>
 #include <vtkTextureObject.h>
 #include <vtkVolume.h>
@@ -40,6 +47,42 @@ int vtkTypeOf(VoxelType type)
                                        : VTK_FLOAT;
 }
 
+vtkSmartPointer<vtkImageData> imageOf(const ChartVolume& volume)
+{
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    const glm::ivec3 n = volume.size;
+    image->SetDimensions(n.x, n.y, n.z);
+    image->SetOrigin(volume.origin.x, volume.origin.y, volume.origin.z);
+    image->AllocateScalars(vtkTypeOf(volume.type), 1);
+    std::copy(volume.voxels.begin(), volume.voxels.end(),
+              static_cast<unsigned char*>(image->GetScalarPointer()));
+    return image;
+}
+
+vtkSmartPointer<vtkVolume> volumeOf(const ChartVolume& volume, const ChartScene& scene)
+{
+    vtkNew<vtkColorTransferFunction> colors;
+    vtkNew<vtkPiecewiseFunction> opacity;
+    for (const auto& p : volume.table) {
+        const double value = volume.range.x + p.value * (volume.range.y - volume.range.x);
+        colors->AddRGBPoint(value, p.color.r, p.color.g, p.color.b);
+        opacity->AddPoint(value, p.color.a);
+    }
+    auto result = vtkSmartPointer<vtkVolume>::New();
+    vtkVolumeProperty* property = result->GetProperty();
+    property->SetColor(colors);
+    property->SetScalarOpacity(opacity);
+    property->SetScalarOpacityUnitDistance(1.0);
+    property->SetInterpolationTypeToLinear();
+    property->SetShade(scene.shaded ? 1 : 0);
+    if (scene.shaded) {
+        property->SetAmbient(scene.ambient);
+        property->SetDiffuse(scene.diffuse);
+        property->SetSpecular(0.0);
+    }
+    return result;
+}
+
 class VtkRenderer : public Renderer
 {
 public:
@@ -63,8 +106,8 @@ public:
     support::FloatImage picture() override;
 
 private:
-    void makeVolume(const ChartScene& scene);
-    void makeMapper(vtkImageData* image);
+    void makeVolumes(const ChartScene& scene);
+    void addSurface(const ChartSurface& surface);
     void makeView(const ChartScene& scene);
     void makeFloatTarget();
     // The other renderers make contexts of EGL current in this thread.
@@ -77,60 +120,61 @@ private:
     ChartScene _scene;
     vtkSmartPointer<vtkRenderWindow> _window;
     vtkNew<vtkRenderer> _renderer;
-    vtkNew<vtkVolume> _volume;
     vtkNew<vtkTextureObject> _texture;
     vtkSmartPointer<vtkGPUVolumeRayCastMapper> _gpuMapper;
     vtkSmartPointer<vtkFixedPointVolumeRayCastMapper> _cpuMapper;
 };
 
-void VtkRenderer::makeVolume(const ChartScene& scene)
+// Several are one vtkMultiVolume, whose mapper has an input for each.
+void VtkRenderer::makeVolumes(const ChartScene& scene)
 {
-    vtkNew<vtkImageData> image;
-    const glm::ivec3 n = scene.size;
-    image->SetDimensions(n.x, n.y, n.z);
-    image->SetOrigin(scene.origin.x, scene.origin.y, scene.origin.z);
-    image->AllocateScalars(vtkTypeOf(scene.type), 1);
-    std::copy(scene.voxels.begin(), scene.voxels.end(),
-              static_cast<unsigned char*>(image->GetScalarPointer()));
-
-    vtkNew<vtkColorTransferFunction> colors;
-    vtkNew<vtkPiecewiseFunction> opacity;
-    for (const auto& p : scene.table) {
-        const double value = scene.range.x + p.value * (scene.range.y - scene.range.x);
-        colors->AddRGBPoint(value, p.color.r, p.color.g, p.color.b);
-        opacity->AddPoint(value, p.color.a);
-    }
-    vtkVolumeProperty* property = _volume->GetProperty();
-    property->SetColor(colors);
-    property->SetScalarOpacity(opacity);
-    property->SetScalarOpacityUnitDistance(1.0);
-    property->SetInterpolationTypeToLinear();
-    property->SetShade(scene.shaded ? 1 : 0);
-    if (scene.shaded) {
-        property->SetAmbient(scene.ambient);
-        property->SetDiffuse(scene.diffuse);
-        property->SetSpecular(0.0);
-    }
-    makeMapper(image);
-}
-
-void VtkRenderer::makeMapper(vtkImageData* image)
-{
-    if (_gpu) {
-        _gpuMapper = vtkSmartPointer<vtkGPUVolumeRayCastMapper>::New();
-        _gpuMapper->SetInputData(image);
-        _gpuMapper->SetAutoAdjustSampleDistances(0);
-        _gpuMapper->SetUseJittering(0);
-        _gpuMapper->SetLockSampleDistanceToInputSpacing(0);
-        _volume->SetMapper(_gpuMapper);
-    } else {
+    vtkSmartPointer<vtkVolume> shown = volumeOf(scene.volumes.front(), scene);
+    if (!_gpu) {
         _cpuMapper = vtkSmartPointer<vtkFixedPointVolumeRayCastMapper>::New();
-        _cpuMapper->SetInputData(image);
+        _cpuMapper->SetInputData(imageOf(scene.volumes.front()));
         _cpuMapper->SetAutoAdjustSampleDistances(0);
         _cpuMapper->SetLockSampleDistanceToInputSpacing(0);
         _cpuMapper->SetImageSampleDistance(1.0f);
-        _volume->SetMapper(_cpuMapper);
+        shown->SetMapper(_cpuMapper);
+    } else {
+        _gpuMapper = vtkSmartPointer<vtkGPUVolumeRayCastMapper>::New();
+        _gpuMapper->SetAutoAdjustSampleDistances(0);
+        _gpuMapper->SetUseJittering(0);
+        _gpuMapper->SetLockSampleDistanceToInputSpacing(0);
+        const int count = int(scene.volumes.size());
+        const auto several = vtkSmartPointer<vtkMultiVolume>::New();
+        for (int i = 0; i < count; ++i) {
+            const ChartVolume& volume = scene.volumes[std::size_t(i)];
+            _gpuMapper->SetInputDataObject(i, imageOf(volume));
+            if (count > 1) several->SetVolume(volumeOf(volume, scene), i);
+        }
+        if (count > 1) shown = several;
+        shown->SetMapper(_gpuMapper);
     }
+    _renderer->AddVolume(shown);
+}
+
+void VtkRenderer::addSurface(const ChartSurface& surface)
+{
+    vtkNew<vtkPoints> points;
+    for (const glm::vec3& p : surface.mesh.points)
+        points->InsertNextPoint(p.x, p.y, p.z);
+    vtkNew<vtkCellArray> cells;
+    for (const auto& t : surface.mesh.triangles) {
+        const vtkIdType corners[3] = {vtkIdType(t[0]), vtkIdType(t[1]), vtkIdType(t[2])};
+        cells->InsertNextCell(3, corners);
+    }
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    data->SetPolys(cells);
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(data);
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetLighting(false);
+    actor->GetProperty()->SetColor(surface.color.r, surface.color.g, surface.color.b);
+    actor->GetProperty()->SetOpacity(surface.color.a);
+    _renderer->AddActor(actor);
 }
 
 void VtkRenderer::makeView(const ChartScene& scene)
@@ -176,13 +220,23 @@ Status VtkRenderer::open(const ChartScene& scene)
 {
     _scene = scene;
     if (!std::getenv("DISPLAY")) return Status(ErrorCode::NOT_SUPPORTED, "needs an X server");
+    if (!_gpu && !scene.isOneVolume())
+        return Status(ErrorCode::NOT_SUPPORTED, "draws one volume, and surfaces behind it");
     _window = vtkSmartPointer<vtkRenderWindow>::New();
     _window->SetOffScreenRendering(1);
     _window->SetMultiSamples(0);
     _window->SetSize(scene.view.width, scene.view.height);
     _window->AddRenderer(_renderer);
-    makeVolume(scene);
-    _renderer->AddVolume(_volume);
+    _window->SetAlphaBitPlanes(1); // for peeling
+    makeVolumes(scene);
+    for (const ChartSurface& surface : scene.surfaces)
+        addSurface(surface);
+    if (!scene.surfaces.empty()) {
+        _renderer->SetUseDepthPeeling(1);
+        _renderer->SetUseDepthPeelingForVolumes(1);
+        _renderer->SetMaximumNumberOfPeels(20);
+        _renderer->SetOcclusionRatio(0.0);
+    }
     makeView(scene);
     makeFloatTarget();
     release();

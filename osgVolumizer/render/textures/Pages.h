@@ -1,0 +1,133 @@
+#pragma once
+
+#include "BrickTexture.h"
+#include "PageQueue.h"
+
+#include "../../Voxels.h"
+
+#include <osg/Image>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace osgVolumizer {
+namespace render {
+
+/// The pages of one Voxels on their way from the source into contexts: read by the threads of
+/// PageQueue, kept in main memory until each context that wants them has them and as long as there
+/// is room, and in contexts as long as there is room there. Thread safe; nothing here waits for a
+/// source.
+class Pages : public PageKeeper, public std::enable_shared_from_this<Pages>
+{
+public:
+    /// What a view can do with a page.
+    enum State
+    {
+        ABSENT,
+        READ,     ///< it can be uploaded
+        RESIDENT, ///< the context has it
+        FAILED    ///< the source did not give it; it is tried again later
+    };
+    /// A page that a view looks at, and for how long it is to stay.
+    struct Look
+    {
+        Key key;
+        unsigned contextId = 0, frame = 0;
+        float priority = 0.0f;
+    };
+    struct Page
+    {
+        State state = ABSENT;
+        osg::ref_ptr<BrickTexture> texture;    ///< where read or resident
+        osg::ref_ptr<const osg::Image> texels; ///< where read
+        int offers = 0;                        ///< how often offer() was called for it
+    };
+
+    ~Pages() override;
+
+    /// Forgets pages of another state of the data. Call before the others, in each frame.
+    void begin(const Voxels& voxels);
+    /// Marks a page as used.
+    Page look(const Look& look);
+    /// Tells that a page may be uploaded in this frame. It still is not where nothing of it is
+    /// drawn.
+    void offer(const Key& key);
+    /// Puts a page of one value there without reading it.
+    void provide(const Key& key, const Voxels& voxels, double value);
+    /// Asks for pages in place of those that the view asked for before. Those that are there, or
+    /// failed a short while ago, are left out. Returns how many are waited for.
+    std::int64_t ask(std::uint64_t viewId, std::vector<PageRequest> requests);
+
+    /// How many views look at any paged voxels, this one of `pages` included: those of this frame
+    /// and the one before.
+    static std::size_t viewCount(unsigned frame, Pages& pages, std::uint64_t viewId);
+    /// Releases textures of paged voxels in the context of a state where the budget has no room for
+    /// one more: those used longest ago, of any voxels. Call in the draw thread before it is
+    /// uploaded.
+    static void makeRoom(osg::State& state, const BrickTexture& texture);
+    /// Of the textures of all paged voxels in a context.
+    static std::int64_t textureBytes(unsigned contextId);
+    /// The most that they have been right after an upload, in any context.
+    static std::int64_t mostTextureBytes();
+
+    std::int64_t read(const Key& key) override;
+    std::int64_t release(std::int64_t bytes) override;
+
+    void resizeGLObjectBuffers(unsigned int maximum);
+    void releaseGLObjects(osg::State* state);
+
+    /// One of a Voxels; registered for makeRoom().
+    static std::shared_ptr<Pages> create();
+
+private:
+    struct Entry
+    {
+        osg::ref_ptr<BrickTexture> texture;
+        osg::ref_ptr<const osg::Image> texels; ///< null once let go of
+        std::int64_t bytes = 0;                ///< of the texels in memory
+        unsigned lastFrame = 0;
+        float priority = 0.0f;
+        bool reading = false;
+        int offers = 0; ///< since it was read
+        int failures = 0;
+        double retryTime = 0.0; ///< seconds, by osg::Timer
+    };
+
+    Pages() = default;
+    void fail(const Key& key, const Status& status);
+    std::vector<osg::ref_ptr<BrickTexture>> textures() const;
+
+    mutable std::mutex _mutex; ///< of what follows
+    osg::observer_ptr<const Voxels> _voxels;
+    unsigned _modified = 0, _layout = 0, _generation = 0;
+    unsigned _frame = 0; ///< the last one that looked at anything
+    std::map<Key, Entry> _entries;
+    std::map<std::uint64_t, unsigned> _views; ///< the last frame of each
+    bool _reported = false;                   ///< that the source fails
+};
+
+/// How much a context may be handed in a frame: the bytes that it took its milliseconds for, as
+/// measured. Thread safe.
+class UploadAllowance
+{
+public:
+    static UploadAllowance& of(unsigned contextId);
+
+    /// Whether so many bytes more may be uploaded in a frame; they then count. The first of a frame
+    /// always may.
+    bool take(unsigned frame, std::int64_t bytes);
+    void measured(std::int64_t bytes, double milliseconds);
+
+private:
+    std::mutex _mutex;
+    unsigned _frame = 0;
+    double _taken = 0.0; ///< milliseconds of this frame
+    double _millisecondsPerByte = 1e-6;
+};
+
+} // namespace render
+} // namespace osgVolumizer
