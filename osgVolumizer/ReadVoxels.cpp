@@ -1,5 +1,6 @@
 #include "ReadVoxels.h"
 
+#include "io/PyramidSource.h"
 #include "io/VoxelFiles.h"
 #include "io/VoxelOptions.h"
 
@@ -51,6 +52,7 @@ Result<io::Source> readSource(std::string name, const osgDB::Options* options,
         std::error_code unknown; // OSG takes sockets for folders
         if (std::filesystem::is_directory(path, unknown))
             return readFiles(io::listFolder(path), progress);
+        if (io::PyramidSource::isPyramid(path)) return io::readPyramid(path);
         Result<io::Source> source = io::readImage(path, progress);
         if (source.ok() && io::isSliceOfSeries(path))
             OSG_NOTICE << "osgVolumizer: " << path << " is one slice of a series; the name of its "

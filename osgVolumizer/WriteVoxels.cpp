@@ -2,6 +2,8 @@
 
 #include "core/RegularFile.h"
 #include "core/voxels/VoxelData.h"
+#include "io/OiioTypes.h"
+#include "io/PartFile.h"
 
 #include <OpenImageIO/imageio.h>
 
@@ -15,68 +17,13 @@ namespace osgVolumizer {
 namespace {
 
 namespace fs = std::filesystem;
-
-OIIO::TypeDesc typeDescOf(VoxelType type)
-{
-    switch (type) {
-    case VoxelType::INT8:
-        return OIIO::TypeDesc::INT8;
-    case VoxelType::UINT8:
-        return OIIO::TypeDesc::UINT8;
-    case VoxelType::INT16:
-        return OIIO::TypeDesc::INT16;
-    case VoxelType::UINT16:
-        return OIIO::TypeDesc::UINT16;
-    case VoxelType::INT32:
-        return OIIO::TypeDesc::INT32;
-    case VoxelType::UINT32:
-        return OIIO::TypeDesc::UINT32;
-    case VoxelType::HALF:
-        return OIIO::TypeDesc::HALF;
-    case VoxelType::FLOAT32:
-        return OIIO::TypeDesc::FLOAT;
-    case VoxelType::FLOAT64:
-        return OIIO::TypeDesc::DOUBLE;
-    }
-    return OIIO::TypeDesc::UNKNOWN;
-}
+using io::typeDescOf;
 
 std::string oneLine(std::string text)
 {
     std::replace(text.begin(), text.end(), '\n', ' ');
     return text;
 }
-
-/// A file of another name beside the target, which takes its place when it is whole.
-class PartFile
-{
-public:
-    explicit PartFile(const std::string& target)
-        : _target(target),
-          _part(fs::path(target).replace_extension(".part" + fs::path(target).extension().string()))
-    {
-    }
-    ~PartFile()
-    {
-        std::error_code ignored;
-        if (!_kept) fs::remove(_part, ignored);
-    }
-    std::string name() const { return _part.string(); }
-    Status keep()
-    {
-        std::error_code failed;
-        fs::rename(_part, _target, failed);
-        if (failed)
-            return {ErrorCode::FILE_UNREADABLE,
-                    _target.string() + " cannot be written: " + failed.message()};
-        _kept = true;
-        return {};
-    }
-
-private:
-    fs::path _target, _part;
-    bool _kept = false;
-};
 
 OIIO::ImageSpec specOf(const VoxelSource::Description& d)
 {
@@ -135,7 +82,7 @@ Status writeVoxels(const VoxelSource& source, const std::string& fileName, const
         if (source.describe().size.z > 1 && !out->supports("appendsubimage"))
             return {ErrorCode::NOT_SUPPORTED,
                     fileName + ": the format \"" + out->format_name() + "\" cannot hold slices"};
-        PartFile part(fileName);
+        io::PartFile part(fileName);
         Status status = writeSlices(*out, source, part.name(), fileName, progress);
         return status.ok() ? part.keep() : status;
     } catch (const std::exception& e) {

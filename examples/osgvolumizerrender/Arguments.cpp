@@ -113,6 +113,7 @@ const std::map<std::string, Handler>& handlers()
          }},
         {"--frames", [](Arguments& a, Words& w) { a.frames = w.integer(1, 1000000); }},
         {"--turn", [](Arguments& a, Words& w) { a.turnDegrees = w.number(-360.0, 360.0); }},
+        {"--wait-for-detail", [](Arguments& a, Words& w) { a.waitSeconds = w.number(0.0, 1e9); }},
         {"-O", [](Arguments& a, Words& w) { a.readerOptions = w.text(); }},
         {"--help", [](Arguments& a, Words&) { a.help = true; }},
         {"--version", [](Arguments& a, Words&) { a.version = true; }},
@@ -196,6 +197,9 @@ Renders a scene without a window and writes the picture, the statistics, or both
   --frames N            frames to time, after one that is not (1)
   --turn DEGREES        the viewer goes round the scene by so much from frame to frame, and is back
                         for the picture (0)
+  --wait-for-detail SECONDS
+                        for how long to wait for volumes that are read in the background until the
+                        picture is the final one (60)
   --size W H            pixels (512 512)
   --eye X Y Z           where the viewer is; without it, the whole scene is shown
   --center X Y Z        what is looked at (the scene's centre)

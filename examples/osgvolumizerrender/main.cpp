@@ -12,8 +12,10 @@
 #include <osg/Math>
 #include <osgUtil/Optimizer>
 
+#include <chrono>
 #include <cmath>
 #include <iostream>
+#include <thread>
 
 using namespace osgVolumizer;
 
@@ -78,6 +80,25 @@ void turn(support::SceneRenderer& renderer, const Arguments& arguments,
     renderer.render(); // at rest, a view is exact from its second frame on
 }
 
+/// Draws until nothing is missing of volumes that are read in the background.
+Status waitForDetail(support::SceneRenderer& renderer, double seconds)
+{
+    const auto start = std::chrono::steady_clock::now();
+    renderer.options().frames = 1;
+    while (renderer.status().ok()) {
+        const auto counters = renderer.counters();
+        const auto missing = counters.find("osgVolumizer pages missing");
+        if (missing == counters.end() || missing->second == 0.0) return {};
+        if (std::chrono::steady_clock::now() - start >= std::chrono::duration<double>(seconds))
+            return Status(ErrorCode::FILE_UNREADABLE,
+                          "The picture lacks detail: parts of a volume could not be read in time; "
+                          "see --wait-for-detail.");
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        renderer.render();
+    }
+    return renderer.status();
+}
+
 /// A line for each device of EGL.
 Status listDevices()
 {
@@ -133,6 +154,7 @@ Status run(const Arguments& arguments)
         statistics.latestFrame = renderer.counters();
     }
     if (!renderer.status().ok()) return renderer.status();
+    const Status detail = waitForDetail(renderer, arguments.waitSeconds);
     statistics.device = renderer.device();
     support::FloatImage image;
     if (!arguments.output.empty()) image = support::renderCoverage(renderer);
@@ -141,7 +163,7 @@ Status run(const Arguments& arguments)
     Status status;
     if (!arguments.output.empty()) status = support::writePicture(image, arguments.output);
     if (status.ok() && !arguments.stats.empty()) status = writeStatistics(statistics, arguments);
-    return status;
+    return status.ok() ? detail : status;
 }
 
 } // namespace

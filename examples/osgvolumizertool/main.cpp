@@ -1,14 +1,16 @@
-// osgvolumizertool: makes volume files. Each command writes one 3D TIFF, a page a slice, which
-// OpenImageIO, ImageJ and `osgviewer file.tif.volume` read.
+// osgvolumizertool: makes volume files. Each command but pyramid writes one 3D TIFF, a page a
+// slice, which OpenImageIO, ImageJ and `osgviewer file.tif.volume` read.
 
 #include "Cubes.h"
 #include "ProgressLine.h"
 
 #include <osgVolumizer/ReadVoxels.h>
 #include <osgVolumizer/Version.h>
+#include <osgVolumizer/WritePyramid.h>
 #include <osgVolumizer/WriteVoxels.h>
 #include <osgVolumizer/core/Text.h>
 
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <string>
@@ -32,6 +34,11 @@ const char* const help =
   osgvolumizertool stack2volume IN... OUT.tif
       2D images of one size, a slice each: a folder (in natural order), a numbered pattern ("s%03d.png",
       "s###.png"), or the files one by one.
+
+  osgvolumizertool pyramid IN OUT.tif [--levels mean|mode]
+      A volume and coarser copies of it, for volumes that are larger than memory: viewers read of it what they
+      show. IN is any volume (a raw file as above). Samples of a coarser level are means, or the most frequent
+      value, for labels. What was interrupted is gone on with by the same command.
 
 Options: --quiet (no progress), --help, --version.
 Exit status: 0 done, 1 a file cannot be read or written, 2 the command line is wrong.
@@ -69,6 +76,47 @@ int convert(const std::string& in, const std::string& out, bool quiet)
     }
     if (!voxels.ok()) return fail(FAILED, voxels.status.text);
     return write(*(*voxels)->getSource(), out, quiet);
+}
+
+// A file that is written over is not gone on with.
+std::string originOf(const std::string& in)
+{
+    std::error_code unknown;
+    std::string text = in;
+    const std::string file = in.substr(0, in.find(','));
+    for (const std::string& name : {in, file.substr(0, file.rfind('.'))}) {
+        const auto bytes = std::filesystem::file_size(name, unknown);
+        if (unknown) continue;
+        const auto time = std::filesystem::last_write_time(name, unknown).time_since_epoch();
+        return text + ", " + std::to_string(bytes) + " bytes of " + std::to_string(time.count());
+    }
+    return text;
+}
+
+int makePyramid(const std::vector<std::string>& arguments, const std::string& rule, bool quiet)
+{
+    if (arguments.size() != 2) return fail(USAGE, "pyramid takes IN and OUT.tif");
+    if (rule != "mean" && rule != "mode")
+        return fail(USAGE, "option \"--levels\" is \"" + rule + "\", neither mean nor mode");
+    const std::string &in = arguments[0], &out = arguments[1];
+    Result<osg::ref_ptr<Voxels>> voxels(Status{});
+    {
+        ProgressLine line("reading " + in, quiet);
+        voxels = readVoxels(in, nullptr, std::ref(line));
+    }
+    if (!voxels.ok()) return fail(FAILED, voxels.status.text);
+    PyramidOptions options;
+    options.rule = rule == "mode" ? core::LevelRule::MODE : core::LevelRule::MEAN;
+    options.origin = originOf(in);
+    const VoxelSource& source = *(*voxels)->getSource();
+    Status status;
+    {
+        ProgressLine line("writing " + out, quiet);
+        status = writePyramid(source, out, options, std::ref(line));
+    }
+    if (!status.ok()) return fail(FAILED, status.text);
+    std::cout << out << ": " << core::formatTriple(source.describe().size) << " voxels in levels\n";
+    return DONE;
 }
 
 int makeCubes(const std::vector<std::string>& arguments, VoxelType type, bool quiet)
@@ -111,6 +159,8 @@ int main(int argc, char** argv)
     bool quiet = false;
     std::string typeName = "uint8";
     bool typeGiven = false;
+    std::string levels = "mean";
+    bool levelsGiven = false;
     for (std::size_t i = 0; i < arguments.size();) {
         const std::string option = arguments[i];
         if (option.compare(0, 2, "--") != 0) {
@@ -130,6 +180,10 @@ int main(int argc, char** argv)
             typeName = arguments[i];
             typeGiven = true;
             arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i));
+        } else if (option == "--levels" && i < arguments.size()) {
+            levels = arguments[i];
+            levelsGiven = true;
+            arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i));
         } else {
             return fail(USAGE, "option \"" + option + "\" is unknown, or lacks its value");
         }
@@ -139,8 +193,11 @@ int main(int argc, char** argv)
     arguments.erase(arguments.begin());
     if (typeGiven && command != "mkcubes")
         return fail(USAGE, "option \"--type\" is for mkcubes only");
+    if (levelsGiven && command != "pyramid")
+        return fail(USAGE, "option \"--levels\" is for pyramid only");
     const Result<VoxelType> type = voxelTypeFromName(typeName);
     if (!type.ok()) return fail(USAGE, type.status.text);
+    if (command == "pyramid") return makePyramid(arguments, levels, quiet);
     if (command == "mkcubes") return makeCubes(arguments, *type, quiet);
     if (command == "raw2volume") {
         if (arguments.size() != 2)

@@ -16,6 +16,9 @@ using MemorySource = osg::ref_ptr<MemoryVoxelSource>;
 /// the name says: fewer are FILE_UNREADABLE, more SIZE_MISMATCH.
 Result<Source> readRaw(const RawName& raw, const std::string& path, const Progress& progress);
 
+/// The voxels of a pyramid (see io/PyramidFormat.h), read as they are asked for.
+Result<Source> readPyramid(const std::string& path);
+
 /// The voxels of one file that OpenImageIO opens: the first subimage where that has depth, else all
 /// subimages as slices; row 0 of an image is j = 0. Integers keep their values. Four channels R, G,
 /// B, A make RGBA voxels with straight alpha as stored; R, G, B their luminance (Rec. 709);

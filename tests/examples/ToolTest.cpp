@@ -142,10 +142,25 @@ TEST_F(Tool, StackToVolume)
     fs::remove(path("../osgVolumizerToolStack.tif"));
 }
 
+TEST_F(Tool, PyramidsHaveTheVoxelsOfAnyVolume)
+{
+    ASSERT_EQ(0, run("mkcubes 70 65 3 10 in.tif --type uint16")) << output;
+    ASSERT_EQ(0, run("pyramid in.tif out.tif")) << output;
+    EXPECT_TRUE(says("70,65,3 voxels in levels")) << output;
+    const auto in = readVoxels(path("in.tif")), out = readVoxels(path("out.tif"));
+    ASSERT_TRUE(in.ok() && out.ok());
+    EXPECT_TRUE((*out)->isPaged());
+    EXPECT_EQ((*out)->getTree().levelCount(), 2);
+    EXPECT_EQ(values(**in), values(**out));
+    writeBytes("r.raw", std::string(64 * 64 * 64, 'x'));
+    ASSERT_EQ(0, run("pyramid r.raw.64,64,64,uint8 labels.tif --levels mode")) << output;
+    EXPECT_FALSE(fs::exists(path("labels.part.tif")));
+}
+
 TEST_F(Tool, HelpAndWrongCommandLines)
 {
     EXPECT_EQ(0, run("--help"));
-    EXPECT_TRUE(says("mkcubes") && says("raw2volume") && says("stack2volume"));
+    EXPECT_TRUE(says("mkcubes") && says("pyramid") && says("raw2volume") && says("stack2volume"));
     const std::pair<const char*, const char*> cases[] = {
         {"", "no command"},
         {"frobnicate", "\"frobnicate\""},
@@ -160,6 +175,9 @@ TEST_F(Tool, HelpAndWrongCommandLines)
         {"raw2volume a.raw", "takes"},
         {"raw2volume a.raw a.tif", "does not end in"},
         {"stack2volume a.tif", "takes"},
+        {"pyramid a.tif", "takes"},
+        {"pyramid a.tif b.tif --levels median", "\"median\""},
+        {"mkcubes 4 4 4 4 a.tif --levels mode", "for pyramid only"},
     };
     for (const auto& c : cases) {
         EXPECT_EQ(2, run(c.first)) << c.first;

@@ -281,6 +281,11 @@ void PageSelection::append(const Node& node, const core::Box3d& clipBox)
         brick.textureOffset =
             glm::vec3((0.5 - glm::dvec3(place.samples.min) - place.offset / place.spacing) / size);
     }
+    // Samples that lie further apart are asked for at as many times the period.
+    const glm::dvec3& period = _volume.sampling.periodVoxel;
+    const double steps = node.brick.spacing * (period.x + period.y + period.z) /
+                         (3.0 * _volume.look->voxelsPerSample);
+    brick.stride = static_cast<float>(std::max(std::floor(steps + 1e-6), 1.0));
     brick.texels.texture = node.page.texture;
     brick.texels.voxels = &_voxels;
     brick.texels.index = node.index;

@@ -92,6 +92,7 @@ BrickBatch batchOf(const SelectedBrick& brick)
     batch.brickMin = glm::vec3(brick.clipBox.min);
     batch.brickMax = glm::vec3(brick.clipBox.max);
     batch.cells = brick.cells;
+    batch.stride = brick.cells && brick.cells->homogeneous ? ALL_STEPS : brick.stride;
     batch.joined = brick.joined;
     batch.textureScale = brick.textureScale;
     batch.textureOffset = brick.textureOffset;
@@ -107,7 +108,7 @@ bool setBatch(const BatchDrawing& drawing, const BrickBatch& batch)
         uniforms.set("brickMin", batch.brickMin);
         uniforms.set("brickMax", batch.brickMax);
     }
-    uniforms.set("homogeneous", batch.cells && batch.cells->homogeneous ? 1 : 0);
+    uniforms.set("stride", batch.stride);
     uniforms.set("clipMin", batch.clipMin);
     uniforms.set("clipMax", batch.clipMax);
     return true;

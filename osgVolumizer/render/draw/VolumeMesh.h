@@ -17,8 +17,14 @@ struct BrickBatch
     glm::vec3 clipMin{0.0f}, clipMax{0.0f};            ///< frame; of what is drawn
     glm::vec3 brickMin{0.0f}, brickMax{0.0f};          ///< frame; of what the texture has
     glm::vec3 textureScale{1.0f}, textureOffset{0.0f}; ///< voxel -> texture coordinate
+    /// How many steps of a ray are taken as one, evenly between where the first begins and the last
+    /// ends, so that bricks that differ in it still meet: where samples are further apart, and
+    /// ALL_STEPS where all have one value.
+    float stride = 1.0f;
     unsigned firstIndex = 0, indexCount = 0;
 };
+
+constexpr float ALL_STEPS = 1e9f;
 
 /// Triangles far to near, by brick. Immutable once made.
 struct VolumeMesh

@@ -25,6 +25,7 @@ struct SelectedBrick
     glm::vec3 textureScale{1.0f}, textureOffset{0.0f};
     std::shared_ptr<const BrickCells> cells;    ///< null where nothing is known
     std::shared_ptr<const JoinedBricks> joined; ///< null for one brick with a texture of its own
+    float stride = 1.0f;                        ///< see BrickBatch
     int brickCount = 1;                         ///< how many it stands for
 };
 

@@ -39,7 +39,7 @@ float surfaceOnRay() { return 1e30; }
 void addSurface(float t, inout vec3 color, inout float through) {}
 
 #elif defined(SLAB) && defined(PREINTEGRATED)
-uniform bool homogeneous;           // all of the brick has one value
+uniform float stride; // steps taken as one: see BrickBatch
 
 // Adds the piece of the ray from the last place to this one, where the depth is t.
 void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float unitsPerDepth,
@@ -76,13 +76,13 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
     float unitsPerDepth = length(frameToUnits * direction);
     vec3 rate = VOXEL_LENGTH * direction;
     vec4 light = vec4(0.0, 0.0, 0.0, 1.0); // colour, transmittance
-    if (homogeneous && i < last) {
-        // One step from end to end.
-        float end = min(stop, tNear + last * dt);
+    if (stride > 1.0 && i < last) {
+        // Equal steps from end to end.
+        float longer = ceil((last - i) / stride), end = min(stop, tNear + last * dt);
         tNear = max(start, tNear + i * dt);
-        dt = end - tNear;
+        dt = (end - tNear) / longer;
         i = 0.0;
-        last = 1.0;
+        last = longer;
     }
     float t = max(start, tNear + i * dt);
     vec3 place = placeOf(origin + t * direction);
@@ -101,7 +101,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
 }
 
 #elif defined(SLAB)
-uniform bool homogeneous; // all of the brick has one value
+uniform float stride; // steps taken as one: see BrickBatch
 
 // Light of the brick's steps, front to back: premultiplied colour, opacity.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
@@ -113,14 +113,18 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     float perDepth = count / (tFar - tNear);
     float i = max(0.0, ceil((brick.x - tNear) * perDepth - 0.5));
     float last = min(count, ceil((brick.y - tNear) * perDepth - 0.5)); // not one of the brick's
+    if (stride > 1.0 && i < last) {
+        // Equal steps from end to end.
+        float longer = ceil((last - i) / stride);
+        tNear += i * dt;
+        dt *= (last - i) / longer;
+        i = 0.0;
+        last = longer;
+    }
     vec3 rate = VOXEL_LENGTH * direction * dt;
     float units = dt * length(frameToUnits * direction);
     vec3 color = vec3(0.0);
     float transmittance = 1.0;
-    if (homogeneous && i < last) {
-        units *= last - i;
-        last = i + 1.0;
-    }
     float t = tNear + (i + 0.5) * dt;
     vec3 place = placeOf(origin + t * direction);
     int steps = int(last - i);

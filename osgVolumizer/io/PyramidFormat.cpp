@@ -1,0 +1,105 @@
+#include "PyramidFormat.h"
+
+#include "../core/Text.h"
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+namespace osgVolumizer {
+namespace io {
+
+namespace {
+
+const char* const MAGIC = "osgVolumizer pyramid";
+
+std::string numbers(const double* values, int count)
+{
+    std::string text;
+    for (int i = 0; i < count; ++i)
+        text += (i ? "," : "") + core::formatNumber(values[i]);
+    return text;
+}
+
+Status unreadable(const std::string& text)
+{
+    return {ErrorCode::FILE_UNREADABLE, "the header of the pyramid " + text};
+}
+
+} // namespace
+
+Result<core::BrickTree> PyramidFormat::tree(int overlap) const
+{
+    return core::BrickTree::create(
+        description.size, core::BrickTree::levelsFor(description.size, STEP), STEP, overlap);
+}
+
+std::string PyramidFormat::text() const
+{
+    const VoxelSource::Description& d = description;
+    std::string line = origin;
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    return std::string(MAGIC) + " 1\nsize " + core::formatTriple(d.size) + "\ntype " +
+           voxelTypeName(d.type) + "\ncomponents " + std::to_string(d.components) + "\nspacing " +
+           numbers(&d.spacing[0], 3) + "\norigin " + numbers(&d.origin[0], 3) + "\naxes " +
+           numbers(&d.axes[0][0], 9) + "\nrule " +
+           (rule == core::LevelRule::MODE ? "mode" : "mean") + "\nfrom " + line;
+}
+
+bool PyramidFormat::isPyramid(const std::string& description)
+{
+    return description.compare(0, std::string(MAGIC).size(), MAGIC) == 0;
+}
+
+Result<PyramidFormat> PyramidFormat::parse(const std::string& text)
+{
+    std::istringstream in(text);
+    std::string line;
+    if (!std::getline(in, line) || line != std::string(MAGIC) + " 1")
+        return unreadable("does not begin with \"" + std::string(MAGIC) + " 1\"");
+    std::map<std::string, std::string> values;
+    while (std::getline(in, line)) {
+        const std::size_t blank = std::min(line.find(' '), line.size());
+        values[line.substr(0, blank)] = line.substr(std::min(blank + 1, line.size()));
+    }
+    PyramidFormat format;
+    VoxelSource::Description& d = format.description;
+    double size[3], components = 0.0;
+    if (!core::parseNumbers(values["size"], size, 3)) return unreadable("has no size");
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(size[axis] >= 1.0 && size[axis] <= 1e9)) return unreadable("has a wrong size");
+        d.size[axis] = static_cast<int>(size[axis]);
+    }
+    const Result<VoxelType> type = voxelTypeFromName(values["type"]);
+    if (!type.ok()) return unreadable("has a wrong type: " + type.status.text);
+    d.type = *type;
+    if (!core::parseNumber(values["components"], components))
+        return unreadable("has no number of components");
+    d.components = components == 4.0 ? 4 : components == 1.0 ? 1 : 0;
+    if (!core::parseNumbers(values["spacing"], &d.spacing[0], 3) ||
+        !core::parseNumbers(values["origin"], &d.origin[0], 3) ||
+        !core::parseNumbers(values["axes"], &d.axes[0][0], 9))
+        return unreadable("does not say where the voxels lie");
+    if (values["rule"] != "mean" && values["rule"] != "mode") return unreadable("has a wrong rule");
+    format.rule = values["rule"] == "mode" ? core::LevelRule::MODE : core::LevelRule::MEAN;
+    format.origin = values["from"];
+    if (Status status = d.validate(); !status.ok())
+        return unreadable("describes no voxels: " + status.text);
+    return format;
+}
+
+int PyramidFormat::layerCount(const core::BrickTree& tree)
+{
+    return pairOf(tree, tree.levelCount(), 0);
+}
+
+int PyramidFormat::pairOf(const core::BrickTree& tree, int level, int layer)
+{
+    int pair = layer;
+    for (int i = 0; i < level; ++i)
+        pair += tree.count(i).z;
+    return pair;
+}
+
+} // namespace io
+} // namespace osgVolumizer
