@@ -102,7 +102,7 @@ bool isWorthSkipping(const VolumeInstance& volume)
 void selectBricks(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& hooks,
                   osgUtil::CullVisitor& visitor)
 {
-    if (voxels.isPaged()) return selectPages(volume, voxels, visitor);
+    if (voxels.isPaged()) return selectPages(volume, voxels, hooks, visitor);
     const core::BrickLayout& layout = voxels.getLayout();
     const osg::ref_ptr<BrickResidency> textures = BrickResidency::of(voxels);
     const PreparedGeometry& prepared = *volume.prepared;

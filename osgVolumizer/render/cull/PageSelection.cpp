@@ -33,10 +33,12 @@ constexpr double FINE_ENOUGH = 1.0;
 class PageSelection
 {
 public:
-    PageSelection(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
-        : _volume(volume), _voxels(voxels), _tree(voxels.getTree()), _visitor(visitor),
-          _query(occupancyQuery(volume, voxels)), _pages(BrickResidency::of(voxels)->pages(voxels)),
-          _toEye(toGlm(*volume.frameToEye)), _frame(frameOf(visitor)),
+    PageSelection(VolumeInstance& volume, const Voxels& voxels, bool skipping,
+                  osgUtil::CullVisitor& visitor)
+        : _volume(volume), _voxels(voxels), _tree(voxels.getTree()), _skipping(skipping),
+          _visitor(visitor), _query(occupancyQuery(volume, voxels)),
+          _pages(BrickResidency::of(voxels)->pages(voxels)), _toEye(toGlm(*volume.frameToEye)),
+          _frame(frameOf(visitor)),
           _contextId(visitor.getState() ? visitor.getState()->getContextID() : 0)
     {
         const core::View view{_toEye, toGlm(*visitor.getProjectionMatrix())};
@@ -107,12 +109,14 @@ private:
     bool isMissingBelow(const Node& node) const;
     void draw(std::size_t number, const Node* coarser);
     void append(const Node& node, const core::Box3d& clipBox);
+    bool cutToOccupied(const Node& node, SelectedBrick& brick);
     void ask();
     void report() const;
 
     VolumeInstance& _volume;
     const Voxels& _voxels;
     const core::BrickTree& _tree;
+    const bool _skipping;
     osgUtil::CullVisitor& _visitor;
     const OccupancyQuery _query;
     const std::shared_ptr<Pages> _pages;
@@ -286,6 +290,7 @@ void PageSelection::append(const Node& node, const core::Box3d& clipBox)
     const double steps = node.brick.spacing * (period.x + period.y + period.z) /
                          (3.0 * _volume.look->voxelsPerSample);
     brick.stride = static_cast<float>(std::max(std::floor(steps + 1e-6), 1.0));
+    if (!cutToOccupied(node, brick)) return;
     brick.texels.texture = node.page.texture;
     brick.texels.voxels = &_voxels;
     brick.texels.index = node.index;
@@ -293,6 +298,27 @@ void PageSelection::append(const Node& node, const core::Box3d& clipBox)
     brick.texels.paged = true;
     brick.texels.texels = node.page.texels;
     _volume.bricks.push_back(std::move(brick));
+}
+
+// Cuts a brick down to where it shows something; false where that is nowhere.
+bool PageSelection::cutToOccupied(const Node& node, SelectedBrick& brick)
+{
+    const ProgramFeatures& features = _volume.look->features;
+    if (node.uniform || !node.page.cells || !_skipping || !_volume.prepared->voxelFrame ||
+        features.cubic || features.gathers())
+        return true;
+    brick.cells = node.page.cells->get(_voxels, _query);
+    _volume.cellSize = std::min<double>(_volume.cellSize, brick.cells->cellSize);
+    _volume.cellCount += brick.cells->cellCount;
+    _volume.occupiedCells += brick.cells->occupiedCount;
+    if (features.slab || !features.preIntegrated)
+        brick.box = intersection(brick.box, brick.cells->box);
+    if (brick.box.empty()) {
+        ++_volume.emptyBricks;
+        return false;
+    }
+    _volume.homogeneousBricks += brick.cells->homogeneous;
+    return true;
 }
 
 // The coarser is the more urgent, since its samples are further apart on the screen.
@@ -325,10 +351,11 @@ void PageSelection::report() const
 
 } // namespace
 
-void selectPages(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
+void selectPages(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& hooks,
+                 osgUtil::CullVisitor& visitor)
 {
     if (!visitor.getProjectionMatrix()) return;
-    PageSelection(volume, voxels, visitor).run();
+    PageSelection(volume, voxels, hooks.skipping, visitor).run();
 }
 
 } // namespace render

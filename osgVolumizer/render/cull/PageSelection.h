@@ -1,5 +1,6 @@
 #pragma once
 
+#include "../context/ViewHooks.h"
 #include "../volume/VolumeInstance.h"
 
 namespace osgUtil {
@@ -15,7 +16,8 @@ namespace render {
 /// be finer than pixels. Asks for those that are missing, and appends what there is of them, far to
 /// near: of a page that is missing, the nearest coarser one that is there. Reads nothing. Expects
 /// the volume's look.
-void selectPages(VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor);
+void selectPages(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& hooks,
+                 osgUtil::CullVisitor& visitor);
 
 } // namespace render
 } // namespace osgVolumizer

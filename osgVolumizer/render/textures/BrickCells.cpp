@@ -167,7 +167,19 @@ bool showsValues(const Voxels& voxels, const OccupancyQuery& query, double low, 
     return query.table->shows(a, b);
 }
 
-std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, std::int64_t brick,
+OccupancyKey occupancyKey(const Voxels& voxels, const OccupancyQuery& query)
+{
+    const bool byTable = voxels.getComponents() == 1 && !query.isosurface;
+    return {byTable ? query.table->id : 0, query.cubic, query.isosurface,
+            query.isosurface ? query.isoFraction : 0.0};
+}
+
+int shownComponent(const Voxels& voxels)
+{
+    return voxels.getComponents() == 4 ? 3 : 0;
+}
+
+std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, const core::BrickPlace& place,
                                                const core::CellGrid& grid,
                                                const core::LayerRanges& layers,
                                                const OccupancyQuery& query)
@@ -176,7 +188,7 @@ std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, std::int64_
     const auto shows = [&](double low, double high) {
         return showsValues(voxels, query, low, high);
     };
-    result->box = shownBox(layers, voxels.getLayout().brick(brick), query.cubic, shows);
+    result->box = shownBox(layers, place, query.cubic, shows);
     if (result->box.empty()) return result;
     const std::vector<std::uint8_t> occupied = core::occupiedCells(grid, shows);
     setOccupied(grid, occupied, *result);

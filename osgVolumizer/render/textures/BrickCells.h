@@ -45,6 +45,23 @@ struct OccupancyQuery
     double isoFraction = 0.0;
 };
 
+/// What answers to queries depend on.
+struct OccupancyKey
+{
+    unsigned tableId = 0;
+    bool cubic = false, isosurface = false;
+    double isoFraction = 0.0;
+    bool operator==(const OccupancyKey& o) const
+    {
+        return tableId == o.tableId && cubic == o.cubic && isosurface == o.isosurface &&
+               isoFraction == o.isoFraction;
+    }
+};
+OccupancyKey occupancyKey(const Voxels& voxels, const OccupancyQuery& query);
+
+/// The component that decides what shows: the value, or alpha.
+int shownComponent(const Voxels& voxels);
+
 /// BrickCells::texture of one cell that is occupied.
 osg::Texture3D* occupiedEverywhere();
 
@@ -52,7 +69,7 @@ osg::Texture3D* occupiedEverywhere();
 bool showsValues(const Voxels& voxels, const OccupancyQuery& query, double low, double high);
 
 /// The cells of a brick whose ranges are known. \param layers of the same samples
-std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, std::int64_t brick,
+std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, const core::BrickPlace& place,
                                                const core::CellGrid& grid,
                                                const core::LayerRanges& layers,
                                                const OccupancyQuery& query);

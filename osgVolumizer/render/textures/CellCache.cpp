@@ -17,19 +17,13 @@ core::VoxelView viewOf(const Voxels& voxels, std::int64_t brick, const Voxels::B
     return view;
 }
 
-// The component that decides what shows: the value, or alpha.
-int shownComponent(const Voxels& voxels)
-{
-    return voxels.getComponents() == 4 ? 3 : 0;
-}
-
 } // namespace
 
 std::shared_ptr<const BrickCells> CellCache::get(const Voxels& voxels, std::int64_t brick,
                                                  const OccupancyQuery& query)
 {
     const unsigned modified = voxels.getModifiedCount(brick), layout = voxels.getLayoutCount();
-    const Key key = keyOf(voxels, query);
+    const OccupancyKey key = occupancyKey(voxels, query);
     std::shared_ptr<Brick> held;
     {
         std::lock_guard<std::mutex> lock(_mutex);
@@ -49,20 +43,14 @@ std::shared_ptr<const BrickCells> CellCache::get(const Voxels& voxels, std::int6
     if (const auto* known = entry.cells.find(key)) return *known;
     if (!scan(voxels, brick, query.cubic, entry)) return nullptr;
     const core::CellGrid& grid = *(query.cubic ? entry.cubic : entry.linear);
-    return entry.cells.add(key, findOccupied(voxels, brick, grid, *entry.layers, query));
-}
-
-CellCache::Key CellCache::keyOf(const Voxels& voxels, const OccupancyQuery& query)
-{
-    const bool byTable = voxels.getComponents() == 1 && !query.isosurface;
-    return {byTable ? query.table->id : 0, query.cubic, query.isosurface,
-            query.isosurface ? query.isoFraction : 0.0};
+    return entry.cells.add(
+        key, findOccupied(voxels, voxels.getLayout().brick(brick), grid, *entry.layers, query));
 }
 
 std::shared_ptr<const BrickCells> CellCache::join(const Voxels& voxels, const OccupancyQuery& query,
                                                   const std::vector<Part>& parts)
 {
-    const Key key = keyOf(voxels, query);
+    const OccupancyKey key = occupancyKey(voxels, query);
     const unsigned layout = voxels.getLayoutCount();
     std::lock_guard<std::mutex> lock(_mutex);
     _joined.removeIf([layout](const auto& entry) { return entry.value.layoutCount != layout; });

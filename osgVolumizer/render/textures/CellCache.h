@@ -34,24 +34,13 @@ public:
 private:
     static constexpr std::size_t CAPACITY = 3;
 
-    struct Key
-    {
-        unsigned tableId = 0;
-        bool cubic = false, isosurface = false;
-        double isoFraction = 0.0;
-        bool operator==(const Key& o) const
-        {
-            return tableId == o.tableId && cubic == o.cubic && isosurface == o.isosurface &&
-                   isoFraction == o.isoFraction;
-        }
-    };
     struct Brick
     {
         mutable std::mutex mutex; ///< held while the brick is read and scanned
         unsigned modifiedCount = 0, layoutCount = 0;
         std::shared_ptr<const core::CellGrid> linear, cubic; ///< by the support of the filter
         std::shared_ptr<const core::LayerRanges> layers;
-        core::RecencyCache<Key, std::shared_ptr<const BrickCells>> cells{CAPACITY};
+        core::RecencyCache<OccupancyKey, std::shared_ptr<const BrickCells>> cells{CAPACITY};
     };
     struct Joined
     {
@@ -60,13 +49,12 @@ private:
         std::shared_ptr<const BrickCells> cells;
     };
 
-    static Key keyOf(const Voxels& voxels, const OccupancyQuery& query);
     static bool scan(const Voxels& voxels, std::int64_t brick, bool cubic, Brick& entry);
     std::vector<std::shared_ptr<Brick>> allBricks() const;
 
     mutable std::mutex _mutex; ///< of what follows; never held while that of a brick is taken
     std::map<std::int64_t, std::shared_ptr<Brick>> _bricks;
-    core::RecencyCache<Key, Joined> _joined{CAPACITY};
+    core::RecencyCache<OccupancyKey, Joined> _joined{CAPACITY};
 };
 
 } // namespace render

@@ -114,10 +114,11 @@ Pages::Page Pages::look(const Look& look)
     entry.priority = look.priority;
     if (entry.texture) {
         entry.texture->setUse(look.frame, look.priority);
-        if (entry.texture->isIn(look.contextId)) return {RESIDENT, entry.texture, entry.texels};
-        if (entry.texels) return {READ, entry.texture, entry.texels, entry.offers};
+        if (entry.texture->isIn(look.contextId))
+            return {RESIDENT, entry.texture, entry.texels, 0, entry.cells};
+        if (entry.texels) return {READ, entry.texture, entry.texels, entry.offers, entry.cells};
     }
-    return {entry.failures > 0 ? FAILED : ABSENT, nullptr, nullptr};
+    return {entry.failures > 0 ? FAILED : ABSENT, nullptr, nullptr, 0, nullptr};
 }
 
 void Pages::offer(const Key& key)
@@ -194,10 +195,14 @@ std::int64_t Pages::read(const Key& key)
         generation = _generation;
     }
     osg::ref_ptr<const osg::Image> texels;
+    std::shared_ptr<PageCells> cells;
     const core::TreeBrick brick = voxels->getTree().brick(key.page);
     Result<VoxelBlock> block = voxels->readPage(key.page);
     try {
-        if (block.ok()) texels = makeTexels(*voxels, *block, brick.samples.size(), key.gradients);
+        if (block.ok()) {
+            texels = makeTexels(*voxels, *block, brick.samples.size(), key.gradients);
+            cells = std::make_shared<PageCells>(*voxels, brick, *block);
+        }
     } catch (const std::exception&) {
         block = Status(ErrorCode::TOO_LARGE, "there is no memory for a page of voxels");
     }
@@ -212,6 +217,7 @@ std::int64_t Pages::read(const Key& key)
     entry.failures = entry.offers = 0;
     entry.retryTime = 0.0;
     entry.texels = texels;
+    entry.cells = cells;
     entry.bytes = static_cast<std::int64_t>(texels->getTotalSizeInBytes());
     entry.lastFrame = _frame;
     if (!entry.texture)
@@ -263,6 +269,15 @@ std::vector<osg::ref_ptr<BrickTexture>> Pages::textures() const
     return result;
 }
 
+std::vector<std::shared_ptr<PageCells>> Pages::cells() const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    std::vector<std::shared_ptr<PageCells>> result;
+    for (const auto& entry : _entries)
+        if (entry.second.cells) result.push_back(entry.second.cells);
+    return result;
+}
+
 void Pages::makeRoom(osg::State& state, const BrickTexture& texture)
 {
     std::vector<osg::ref_ptr<ResidentTexture>> others;
@@ -302,12 +317,16 @@ void Pages::resizeGLObjectBuffers(unsigned int maximum)
 {
     for (const auto& texture : textures())
         texture->resizeGLObjectBuffers(maximum);
+    for (const auto& page : cells())
+        page->resizeGLObjectBuffers(maximum);
 }
 
 void Pages::releaseGLObjects(osg::State* state)
 {
     for (const auto& texture : textures())
         texture->releaseGLObjects(state);
+    for (const auto& page : cells())
+        page->releaseGLObjects(state);
 }
 
 UploadAllowance& UploadAllowance::of(unsigned contextId)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "BrickTexture.h"
+#include "PageCells.h"
 #include "PageQueue.h"
 
 #include "../../Voxels.h"
@@ -45,6 +46,7 @@ public:
         osg::ref_ptr<BrickTexture> texture;    ///< where read or resident
         osg::ref_ptr<const osg::Image> texels; ///< where read
         int offers = 0;                        ///< how often offer() was called for it
+        std::shared_ptr<PageCells> cells; ///< where read or resident; null where it has one value
     };
 
     ~Pages() override;
@@ -88,7 +90,8 @@ private:
     {
         osg::ref_ptr<BrickTexture> texture;
         osg::ref_ptr<const osg::Image> texels; ///< null once let go of
-        std::int64_t bytes = 0;                ///< of the texels in memory
+        std::shared_ptr<PageCells> cells;
+        std::int64_t bytes = 0; ///< of the texels in memory
         unsigned lastFrame = 0;
         float priority = 0.0f;
         bool reading = false;
@@ -100,6 +103,7 @@ private:
     Pages() = default;
     void fail(const Key& key, const Status& status);
     std::vector<osg::ref_ptr<BrickTexture>> textures() const;
+    std::vector<std::shared_ptr<PageCells>> cells() const;
 
     mutable std::mutex _mutex; ///< of what follows
     osg::observer_ptr<const Voxels> _voxels;
