@@ -77,7 +77,6 @@ void turn(support::SceneRenderer& renderer, const Arguments& arguments,
         statistics.latestFrame = renderer.counters();
     }
     renderer.options().view = view;
-    renderer.render(); // at rest, a view is exact from its second frame on
 }
 
 /// Draws until nothing is missing of volumes that are read in the background.
@@ -85,6 +84,7 @@ Status waitForDetail(support::SceneRenderer& renderer, double seconds)
 {
     const auto start = std::chrono::steady_clock::now();
     renderer.options().frames = 1;
+    renderer.render(); // at rest, a view is exact from its second frame on
     while (renderer.status().ok()) {
         const auto counters = renderer.counters();
         const auto missing = counters.find("osgVolumizer pages missing");
