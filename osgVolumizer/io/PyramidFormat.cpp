@@ -3,6 +3,7 @@
 #include "../core/Text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -80,6 +81,8 @@ Result<PyramidFormat> PyramidFormat::parse(const std::string& text)
         !core::parseNumbers(values["origin"], &d.origin[0], 3) ||
         !core::parseNumbers(values["axes"], &d.axes[0][0], 9))
         return unreadable("does not say where the voxels lie");
+    for (int i = 0; i < 9; ++i)
+        if (!(std::abs(d.axes[i / 3][i % 3]) <= 1.001)) return unreadable("has wrong axes");
     if (values["rule"] != "mean" && values["rule"] != "mode") return unreadable("has a wrong rule");
     format.rule = values["rule"] == "mode" ? core::LevelRule::MODE : core::LevelRule::MEAN;
     format.origin = values["from"];

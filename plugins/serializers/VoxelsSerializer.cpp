@@ -13,10 +13,11 @@ namespace serializers {
 namespace {
 
 // Voxels with a file name are written by that name; others, and where the scene is to hold all of
-// itself, with their source.
+// itself, with their source, but for what is read piece by piece since it is too large.
 bool isReferred(const Voxels& voxels, const osgDB::OutputStream& os)
 {
-    return !voxels.getFileName().empty() && !(isEmbedding(os) && voxels.getSource());
+    const bool small = voxels.getSource() && !voxels.isPaged();
+    return !voxels.getFileName().empty() && !(isEmbedding(os) && small);
 }
 
 bool readSource(osgDB::InputStream& is, Voxels& voxels)
@@ -36,22 +37,36 @@ bool isSerializable(const VoxelSource& source)
 }
 
 // The voxels of a source that has no form in a scene file, such as a file's.
-osg::ref_ptr<MemoryVoxelSource> inMemory(const VoxelSource& source)
+Status copyToMemory(const VoxelSource& source, MemoryVoxelSource& copy)
 {
-    osg::ref_ptr<MemoryVoxelSource> copy = new MemoryVoxelSource;
+    if (source.levelCount() > 1)
+        return {
+            ErrorCode::NOT_SUPPORTED,
+            "voxels of " + std::string(source.className()) +
+                ", which are read piece by piece, have neither the name of a file nor a wrapper "
+                "of their class for scene files"};
     const VoxelSource::Description description = source.describe();
-    if (copy->allocate(description).ok())
-        reportError(source.read({glm::ivec3(0), description.size}, copy->data()));
-    return copy;
+    const CallerReports withReason;
+    const Status status = copy.allocate(description);
+    return status.ok() ? source.read({glm::ivec3(0), description.size}, copy.data()) : status;
 }
 
+// Where they cannot be, the scene is not written: it would be without them.
 bool writeSource(osgDB::OutputStream& os, const Voxels& voxels)
 {
     const VoxelSource& source = *voxels.getSource();
-    if (isSerializable(source))
+    if (isSerializable(source)) {
         writeObject(os, &source);
-    else
-        writeObject(os, inMemory(source).get());
+        return true;
+    }
+    const osg::ref_ptr<MemoryVoxelSource> copy = new MemoryVoxelSource;
+    const Status status = copyToMemory(source, *copy);
+    if (!status.ok()) {
+        reportError({status.code, "the scene is not written: " + status.text});
+        os.throwException("osgVolumizer: " + status.text);
+        return false;
+    }
+    writeObject(os, copy.get());
     return true;
 }
 

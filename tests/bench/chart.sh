@@ -3,7 +3,8 @@
 # without VTK the chart is drawn without it), builds, measures everything in one process, round by
 # round, and writes build/chart/chart.csv, chart.svg and chart.md. Arguments go to the program, e.g.
 #   tests/bench/chart.sh --scenes smooth,head --rounds 3
-# A full run takes about a quarter of an hour on two cores. The CPUs should have nothing else to do.
+# A full run takes about three quarters of an hour on two cores, half of it for references, which are
+# kept in build/chart/chart. The CPUs should have nothing else to do.
 set -u -o pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
 . .ci/packages.sh
@@ -25,7 +26,8 @@ display=()
 # What was measured, and on what, for the chart to say.
 {
     echo "# Commit $(git rev-parse --short HEAD 2>/dev/null || echo unknown), $(date -u +%F); $(nproc) cores,"
-    echo "# ${LIBGL_ALWAYS_SOFTWARE:+Mesa's software rasteriser; }512 x 512 pixels, 128^3 voxels"
+    echo "# ${LIBGL_ALWAYS_SOFTWARE:+Mesa's software rasteriser;}"
+    echo "# 512 x 512 pixels, 128^3 voxels unless stated"
     cat build/chart/chart.csv
 } >build/chart/run.csv
 mv build/chart/run.csv build/chart/chart.csv

@@ -69,6 +69,41 @@ bool sameVoxels(const Voxels& a, const Voxels& b)
            std::memcmp(x->data(), y->data(), x->sizeInBytes()) == 0;
 }
 
+enum Oddity
+{
+    NO_ODDITY,
+    FAILS,
+    PAGED
+};
+
+class UnknownSource : public VoxelSource
+{
+public:
+    META_Object(osgVolumizerTests, UnknownSource);
+    explicit UnknownSource(Oddity oddity = NO_ODDITY) : _oddity(oddity) {}
+    UnknownSource(const UnknownSource& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY)
+        : VoxelSource(o, op), _oddity(o._oddity)
+    {
+    }
+    Description describe() const override
+    {
+        Description d;
+        d.size = glm::ivec3(3, 4, 5);
+        return d;
+    }
+    Status read(const core::Box3i& region, void* destination) const override
+    {
+        if (_oddity == FAILS) return {ErrorCode::FILE_UNREADABLE, "no such luck"};
+        const glm::ivec3 n = region.size();
+        std::memset(destination, 77, std::size_t(n.x * n.y * n.z));
+        return {};
+    }
+    int levelCount() const override { return _oddity == PAGED ? 2 : 1; }
+
+private:
+    Oddity _oddity;
+};
+
 } // namespace
 
 TEST_P(SerializerTest, TetraSetsKeepEveryBitInEveryLayout)
@@ -245,6 +280,30 @@ TEST_P(SerializerTest, VoxelsOfAFileCanBeWrittenInline)
     const auto* source = dynamic_cast<const MemoryVoxelSource*>(b->getVoxels()->getSource());
     ASSERT_TRUE(source && source->sizeInBytes() == bytes.size());
     EXPECT_EQ(std::memcmp(source->data(), bytes.data(), bytes.size()), 0);
+}
+
+// A class that no scene file knows: its voxels are written; where they cannot be read, or are too
+// large for that, nothing is.
+TEST_P(SerializerTest, VoxelsOfAnyClassAreWrittenOrTheSceneIsNot)
+{
+    for (const Oddity oddity : {NO_ODDITY, FAILS, PAGED}) {
+        clearErrors();
+        const osg::ref_ptr<Voxels> voxels = new Voxels(new UnknownSource(oddity));
+        osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
+        appearance->setVoxels(voxels);
+        std::filesystem::remove(scene());
+        const bool written = osgDB::writeObjectFile(*appearance, scene());
+        EXPECT_EQ(written, oddity == NO_ODDITY) << oddity;
+        EXPECT_EQ(errors().empty(), oddity == NO_ODDITY) << errors();
+        if (oddity == FAILS) EXPECT_NE(errors().find("no such luck"), std::string::npos);
+        if (oddity == PAGED) EXPECT_NE(errors().find("UnknownSource"), std::string::npos);
+        if (!written) continue;
+        const auto copy = osgDB::readRefFile<VolumeAppearance>(scene());
+        ASSERT_TRUE(copy && copy->getVoxels());
+        const auto block = copy->getVoxels()->getBrick(0);
+        ASSERT_EQ(block.bytes, 60u);
+        EXPECT_EQ(block.data[7], 77);
+    }
 }
 
 TEST_P(SerializerTest, MoreThanOneChunkOfVoxels)

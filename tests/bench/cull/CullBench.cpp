@@ -7,6 +7,8 @@
 #include "../Median.h"
 #include "Volumes.h"
 
+#include <osgVolumizer/core/voxels/VoxelData.h>
+
 #include <osg/MatrixTransform>
 #include <osg/Timer>
 #include <osgUtil/CullVisitor>
@@ -15,6 +17,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
@@ -93,6 +96,35 @@ void run(const char* name, Voxels& voxels, int count, const osg::Vec3d& place, i
     std::printf("%-42s %8.2f us\n", name, (with - without) / count);
 }
 
+// A million bricks of 64^3 voxels, and coarser ones; all of one value, which has to be read.
+class LargeSource : public VoxelSource
+{
+public:
+    META_Object(osgVolumizer, LargeSource);
+    LargeSource() = default;
+    LargeSource(const LargeSource& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY)
+        : VoxelSource(o, op)
+    {
+    }
+    Description describe() const override
+    {
+        Description d;
+        d.size = glm::ivec3(6400);
+        d.spacing = glm::dvec3(0.02);
+        return d;
+    }
+    Status read(const core::Box3i& region, void* destination) const override
+    {
+        return readLevel(0, region, destination);
+    }
+    int levelCount() const override { return core::BrickTree::levelsFor(glm::ivec3(6400), 64); }
+    Status readLevel(int, const core::Box3i& region, void* destination) const override
+    {
+        std::memset(destination, 100, std::size_t(core::sampleCount(region.size())));
+        return {};
+    }
+};
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -103,4 +135,7 @@ int main(int argc, char** argv)
     run("outside the view", *voxels, COUNT, {5000, 0, 0}, frames);
     run("smaller than a pixel", *voxels, COUNT, {0, 1e6, 0}, frames);
     run("64 bricks, drawn one by one", *voxels, 1, {-16, -16, -16}, frames);
+    const osg::ref_ptr<Voxels> large = new Voxels(new LargeSource);
+    run("a million bricks of 64^3, paged", *large, 1, {-64, -64, -64}, frames);
+    run("a million bricks, from within", *large, 1, {-64, -364, -64}, frames);
 }
