@@ -210,6 +210,8 @@ Status PyramidWriter::writeLayer(int level, int layer)
     }
     const glm::ivec3 count = _tree.count(level);
     const VoxelSource::Description& d = _format.description;
+    if (std::max(count.x, count.y) > std::numeric_limits<int>::max() / TILE_PIXELS)
+        return {ErrorCode::TOO_LARGE, _fileName + ": an image cannot be so wide"};
     OIIO::ImageSpec spec(count.x * TILE_PIXELS, count.y * TILE_PIXELS, d.components,
                          io::typeDescOf(d.type));
     spec.tile_width = spec.tile_height = TILE_PIXELS;

@@ -29,10 +29,16 @@ Status unreadable(const std::string& text)
 
 } // namespace
 
-Result<core::BrickTree> PyramidFormat::tree(int overlap) const
+Result<core::BrickTree> PyramidFormat::tree() const
 {
-    return core::BrickTree::create(
-        description.size, core::BrickTree::levelsFor(description.size, STEP), STEP, overlap);
+    Result<core::BrickTree> tree = core::BrickTree::create(
+        description.size, core::BrickTree::levelsFor(description.size, STEP), STEP);
+    if (tree.ok() && tree->brickCount() > MAXIMUM_BRICKS)
+        return Status(ErrorCode::TOO_LARGE,
+                      "a pyramid of " + core::formatTriple(description.size) + " voxels has " +
+                          std::to_string(tree->brickCount()) + " bricks, more than " +
+                          std::to_string(MAXIMUM_BRICKS));
+    return tree;
 }
 
 std::string PyramidFormat::text() const

@@ -32,8 +32,12 @@ struct PyramidFormat
     core::LevelRule rule = core::LevelRule::MEAN;
     std::string origin; ///< see PyramidOptions
 
-    /// The bricks of all levels, up to one for all; refused as by BrickTree.
-    Result<core::BrickTree> tree(int overlap = 1) const;
+    /// Of all levels: what can be held of their ranges. Some 3 * 10^12 voxels.
+    static constexpr std::int64_t MAXIMUM_BRICKS = std::int64_t(1) << 24;
+
+    /// The bricks of all levels, up to one for all; refused as by BrickTree, and where they are
+    /// more than MAXIMUM_BRICKS (TOO_LARGE).
+    Result<core::BrickTree> tree() const;
     /// Several lines.
     std::string text() const;
     /// FILE_UNREADABLE for anything that text() does not make.

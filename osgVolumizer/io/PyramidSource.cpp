@@ -154,11 +154,6 @@ Status PyramidSource::open(const std::string& path, bool whole)
 
 Status PyramidSource::openPages(OIIO::ImageInput& input, bool whole)
 {
-    // Before anything is allocated: a header may say what it likes.
-    constexpr std::int64_t MOST = std::int64_t(1) << 28;
-    if (_tree.brickCount() > MOST)
-        return {ErrorCode::TOO_LARGE, "a pyramid of " + std::to_string(_tree.brickCount()) +
-                                          " bricks, more than " + std::to_string(MOST)};
     _pageCount = 0;
     for (int level = 0; level < _tree.levelCount(); ++level)
         for (int layer = 0; layer < _tree.count(level).z; ++layer)
@@ -183,9 +178,9 @@ Status PyramidSource::checkPage(OIIO::ImageInput& input, int level, int layer) c
 {
     const OIIO::ImageSpec& spec = input.spec();
     const glm::ivec3 count = _tree.count(level);
-    if (spec.width == count.x * TILE_PIXELS && spec.height == count.y * TILE_PIXELS &&
-        spec.tile_width == TILE_PIXELS && spec.tile_height == TILE_PIXELS &&
-        spec.nchannels == _format.description.components &&
+    if (spec.width == std::int64_t(count.x) * TILE_PIXELS &&
+        spec.height == std::int64_t(count.y) * TILE_PIXELS && spec.tile_width == TILE_PIXELS &&
+        spec.tile_height == TILE_PIXELS && spec.nchannels == _format.description.components &&
         spec.format == typeDescOf(_format.description.type))
         return {};
     return {ErrorCode::FILE_UNREADABLE, "the page of layer " + std::to_string(layer) +

@@ -13,11 +13,6 @@ namespace {
 
 Status checkFileSize(const RawName& raw, const std::string& path)
 {
-    if (raw.fileBytes() > MemoryVoxelSource::DEFAULT_MAXIMUM_BYTES)
-        return {ErrorCode::TOO_LARGE, path + ": " + core::formatTriple(raw.size) + " voxels of " +
-                                          voxelTypeName(raw.type) + " are more than the bound of " +
-                                          std::to_string(MemoryVoxelSource::DEFAULT_MAXIMUM_BYTES) +
-                                          " bytes"};
     std::error_code failed;
     const std::uintmax_t found = std::filesystem::file_size(path, failed);
     if (failed) return {ErrorCode::FILE_UNREADABLE, path + " cannot be read: " + failed.message()};

@@ -1,5 +1,7 @@
 #include "RawVoxelSource.h"
 
+#include "../Paging.h"
+#include "../core/voxels/BrickTree.h"
 #include "../core/voxels/VoxelData.h"
 
 #include <algorithm>
@@ -47,7 +49,8 @@ private:
 
 RawVoxelSource::RawVoxelSource(const RawVoxelSource& o, const osg::CopyOp& op)
     : VoxelSource(o, op), _description(o._description), _path(o._path),
-      _headerBytes(o._headerBytes), _fileBytes(o._fileBytes), _swaps(o._swaps), _file(o._file)
+      _headerBytes(o._headerBytes), _fileBytes(o._fileBytes), _levels(o._levels), _swaps(o._swaps),
+      _file(o._file)
 {
 }
 
@@ -64,6 +67,9 @@ Status RawVoxelSource::open(const RawName& raw, const std::string& path)
     _path = path;
     _headerBytes = raw.headerBytes;
     _fileBytes = raw.fileBytes();
+    _levels = description.sizeInBytes() > getPagingBudget().memoryBytes / 2
+                  ? core::BrickTree::levelsFor(raw.size, pageSize())
+                  : 1;
     _swaps = raw.bigEndian != hostIsBigEndian() && voxelTypeSize(raw.type) > 1;
     _file = std::move(file);
     return {};
@@ -130,6 +136,37 @@ Status RawVoxelSource::read(const core::Box3i& region, void* destination) const
             core::swapBytes(to, static_cast<std::size_t>(element),
                             static_cast<std::size_t>(layer / element));
     }
+    return {};
+}
+
+// Row by row, each with what lies between the samples that are taken.
+Status RawVoxelSource::readLevel(int level, const core::Box3i& region, void* destination) const
+{
+    if (level <= 0 || level >= _levels) return VoxelSource::readLevel(level, region, destination);
+    if (!_file) return {ErrorCode::VALUE_INVALID, "the voxel source has no file"};
+    if (region.empty()) return {};
+    const glm::ivec3& all = _description.size;
+    if (Status status = checkRegion(region, core::BrickTree::levelSize(all, level)); !status.ok())
+        return status;
+    const auto element = voxelTypeSize(_description.type);
+    const auto at = [&](int i, int axis) {
+        const std::int64_t place = (std::int64_t(i) << level) + (std::int64_t(1) << (level - 1));
+        return std::min<std::int64_t>(place, all[axis] - 1);
+    };
+    const std::int64_t first = at(region.min.x, 0), last = at(region.max.x - 1, 0);
+    std::vector<unsigned char> row(std::size_t(last - first + 1) * element);
+    auto* to = static_cast<unsigned char*>(destination);
+    for (int z = region.min.z; z < region.max.z; ++z)
+        for (int y = region.min.y; y < region.max.y; ++y) {
+            const std::int64_t offset = ((at(z, 2) * all.y + at(y, 1)) * all.x + first) *
+                                        static_cast<std::int64_t>(element);
+            Status status = readBytes(offset, static_cast<std::int64_t>(row.size()), row.data());
+            if (!status.ok()) return status;
+            for (int x = region.min.x; x < region.max.x; ++x, to += element)
+                std::memcpy(to, row.data() + std::size_t(at(x, 0) - first) * element, element);
+        }
+    if (_swaps)
+        core::swapBytes(destination, element, std::size_t(core::sampleCount(region.size())));
     return {};
 }
 

@@ -10,7 +10,9 @@ namespace osgVolumizer {
 namespace io {
 
 /// Voxels of a raw file, read as they are asked for. The file stays open, so that it may be deleted
-/// or replaced; what is cut off from it cannot be read any more.
+/// or replaced; what is cut off from it cannot be read any more. One that takes more than half of
+/// what paged voxels may take in memory (see Paging.h) has coarser levels, and so is paged: every
+/// 2^l-th sample, since means would have to be made of all.
 class RawVoxelSource : public VoxelSource
 {
 public:
@@ -25,6 +27,8 @@ public:
 
     Description describe() const override { return _description; }
     Status read(const core::Box3i& region, void* destination) const override;
+    int levelCount() const override { return _levels; }
+    Status readLevel(int level, const core::Box3i& region, void* destination) const override;
 
 protected:
     ~RawVoxelSource() override = default;
@@ -38,6 +42,7 @@ private:
     Description _description;
     std::string _path;
     std::int64_t _headerBytes = 0, _fileBytes = 0;
+    int _levels = 1;
     bool _swaps = false; ///< the file's byte order is not the host's
     std::shared_ptr<const File> _file;
 };

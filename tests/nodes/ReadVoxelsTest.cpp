@@ -1,3 +1,4 @@
+#include <osgVolumizer/Paging.h>
 #include <osgVolumizer/ReadVoxels.h>
 
 #include "../support/LeaksOfOthers.h"
@@ -372,7 +373,7 @@ TEST_F(ReadVoxels, RawFilesOfAnotherSize)
     EXPECT_EQ(ErrorCode::FILE_UNREADABLE, cut.code);
     EXPECT_TRUE(names(cut, file) && names(cut, "63 bytes") && names(cut, "need 64")) << cut.text;
     const Status header = statusOf(file + ".4,4,4,uint8,9223372036854775807");
-    EXPECT_EQ(ErrorCode::TOO_LARGE, header.code);
+    EXPECT_EQ(ErrorCode::FILE_UNREADABLE, header.code);
     const Status longer = statusOf(file + ".4,4,3,uint8");
     EXPECT_EQ(ErrorCode::SIZE_MISMATCH, longer.code);
     EXPECT_TRUE(names(longer, "63 bytes") && names(longer, "need 48")) << longer.text;
@@ -384,15 +385,53 @@ TEST_F(ReadVoxels, AbsurdSizesAreRefusedBeforeAllocation)
     for (const char* format :
          {".16384,8192,8192,uint8", ".2147483647,2147483647,2147483647,float64"}) {
         const Status status = statusOf(file + format);
-        EXPECT_EQ(ErrorCode::TOO_LARGE, status.code);
+        EXPECT_EQ(ErrorCode::FILE_UNREADABLE, status.code);
         EXPECT_TRUE(names(status, "v.raw")) << status.text;
     }
-    // The same as a file of 2^40 bytes that takes no room on disk.
+    // A file of 2^40 bytes that takes no room on disk is paged.
     std::error_code failed;
     fs::resize_file(file, std::uintmax_t(1) << 40, failed);
-    if (!failed) {
-        EXPECT_EQ(ErrorCode::TOO_LARGE, statusOf(file + ".16384,8192,8192,uint8").code);
+    if (failed) return;
+    const auto large = readVoxels(file + ".16384,8192,8192,uint8");
+    ASSERT_TRUE(large.ok()) << large.status.text;
+    ASSERT_TRUE((*large)->isPaged());
+    const core::BrickTree& tree = (*large)->getTree();
+    EXPECT_EQ(tree.levelCount(), 9);
+    const auto page = (*large)->readPage(tree.index(8, glm::ivec3(0)));
+    ASSERT_TRUE(page.ok()) << page.status.text;
+    EXPECT_EQ(page->data[0], 0);
+    EXPECT_EQ((*large)->getCachedBytes(), 0u);
+}
+
+// Its coarser levels are samples of it.
+TEST_F(ReadVoxels, RawFilesLargerThanTheirShareOfMemoryArePaged)
+{
+    constexpr int size = 100;
+    std::string bytes = "HEADER";
+    for (int i = 0; i < size * size * size; ++i) {
+        bytes += static_cast<char>((i * 7) >> 8);
+        bytes += static_cast<char>(i * 7);
     }
+    const std::string name = writeBytes("v.raw", bytes) + ".100,100,100,uint16,6,big";
+    EXPECT_FALSE((*readVoxels(name))->isPaged());
+    PagingBudget budget = defaultPagingBudget();
+    budget.memoryBytes = 3 << 20;
+    ASSERT_TRUE(setPagingBudget(budget));
+    const auto voxels = readVoxels(name);
+    EXPECT_TRUE(setPagingBudget(defaultPagingBudget()));
+    ASSERT_TRUE(voxels.ok() && (*voxels)->isPaged());
+    const VoxelSource& source = *(*voxels)->getSource();
+    ASSERT_EQ(source.levelCount(), 2);
+    const core::Box3i box{{3, 0, 49}, {50, 7, 50}};
+    std::vector<std::uint16_t> values(47 * 7);
+    ASSERT_TRUE(source.readLevel(1, box, values.data()).ok());
+    const std::uint16_t* value = values.data();
+    for (int y = 0; y < 7; ++y)
+        for (int x = 3; x < 50; ++x)
+            ASSERT_EQ(*value++,
+                      static_cast<std::uint16_t>(((99 * size + 2 * y + 1) * size + 2 * x + 1) * 7));
+    EXPECT_FALSE(source.readLevel(1, {{0, 0, 0}, {51, 1, 1}}, values.data()).ok());
+    EXPECT_FALSE(source.readLevel(2, box, values.data()).ok());
 }
 
 TEST_F(ReadVoxels, MissingFiles)

@@ -10,7 +10,8 @@ namespace {
 
 bool overlapSuffices(const Voxels& voxels, int samples)
 {
-    return voxels.getLayout().brickCount() <= 1 || voxels.getOverlap() >= samples;
+    return (voxels.getLayout().brickCount() <= 1 && !voxels.isPaged()) ||
+           voxels.getOverlap() >= samples;
 }
 
 // What rules slabs out; the first thing that does. Empty where nothing does.
