@@ -29,7 +29,7 @@ struct Arguments
     std::optional<std::string> device; ///< the number of EGL's, as it was typed
     bool listDevices = false;
     int frames = 1;
-    double turnDegrees = 0.0; ///< from frame to frame
+    double turnDegrees = 0.0;  ///< from frame to frame
     double waitSeconds = 60.0; ///< for volumes that are read in the background
     bool help = false;
     bool version = false;
