@@ -129,7 +129,7 @@ TEST_F(VolumeLoader, ErrorsCarryTheirMessage)
     const std::pair<std::string, std::string> cases[] = {
         {path("none.tif.volume"), "none.tif"},
         {file + ".4,4,4,uint8.volume", "60 bytes"},
-        {file + ".16384,8192,8192,uint8.volume", "more than the bound"},
+        {file + ".16384,8192,8192,uint8.volume", "need 1099511627776"},
         {file + ".4,4,4,uint7.volume", "\"uint7\""},
         {file + ".volume", "cannot be opened as an image"},
     };

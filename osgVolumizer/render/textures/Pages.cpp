@@ -341,25 +341,30 @@ UploadAllowance& UploadAllowance::of(unsigned contextId)
 
 bool UploadAllowance::take(unsigned frame, std::int64_t bytes)
 {
-    const double budget = getPagingBudget().uploadMilliseconds;
+    constexpr double SHARE = 0.1, MOST = 50.0;
     std::lock_guard<std::mutex> lock(_mutex);
     if (frame != _frame) {
+        const double begin = now();
+        const double last = frame == _frame + 1 ? 1e3 * (begin - _begin) : 0.0;
+        _allowed = std::max(getPagingBudget().uploadMilliseconds, std::min(SHARE * last, MOST));
         _frame = frame;
+        _begin = begin;
         _taken = 0.0;
     }
     const double time = _millisecondsPerByte * double(bytes);
-    if (_taken > 0.0 && _taken + time > budget) return false;
+    if (_taken > 0.0 && _taken + time > _allowed) return false;
     _taken += time;
     return true;
 }
 
 void UploadAllowance::measured(std::int64_t bytes, double milliseconds)
 {
-    constexpr double NEW = 0.25; // weight of the newest; the rest is what was known
+    // The newest counts for a quarter; a thread that had to wait for its turn tells little.
+    constexpr double WEIGHT = 0.25, MOST = 4.0;
     std::lock_guard<std::mutex> lock(_mutex);
-    _millisecondsPerByte +=
-        NEW * (std::max(milliseconds, 1e-6) / double(std::max<std::int64_t>(bytes, 1)) -
-               _millisecondsPerByte);
+    const double rate = milliseconds / double(std::max<std::int64_t>(bytes, 1));
+    const double likely = std::clamp(rate, 1e-9, MOST * _millisecondsPerByte);
+    _millisecondsPerByte += WEIGHT * (likely - _millisecondsPerByte);
 }
 
 } // namespace render

@@ -114,8 +114,8 @@ private:
     bool _reported = false;                   ///< that the source fails
 };
 
-/// How much a context may be handed in a frame: the bytes that it took its milliseconds for, as
-/// measured. Thread safe.
+/// How much a context may be handed in a frame: the bytes that take the budget's milliseconds, as
+/// measured; where frames are slow, a tenth of what they take, up to 50 ms. Thread safe.
 class UploadAllowance
 {
 public:
@@ -129,7 +129,9 @@ public:
 private:
     std::mutex _mutex;
     unsigned _frame = 0;
-    double _taken = 0.0; ///< milliseconds of this frame
+    double _begin = 0.0;   ///< of this frame, seconds
+    double _allowed = 0.0; ///< milliseconds of this frame
+    double _taken = 0.0;
     double _millisecondsPerByte = 1e-6;
 };
 
