@@ -361,6 +361,8 @@ void UploadAllowance::measured(std::int64_t bytes, double milliseconds)
 {
     // The newest counts for a quarter; a thread that had to wait for its turn tells little.
     constexpr double WEIGHT = 0.25, MOST = 4.0;
+    constexpr std::int64_t SMALL = 4096; // what takes its time by itself, such as a single texel
+    if (bytes < SMALL) return;
     std::lock_guard<std::mutex> lock(_mutex);
     const double rate = milliseconds / double(std::max<std::int64_t>(bytes, 1));
     const double likely = std::clamp(rate, 1e-9, MOST * _millisecondsPerByte);
