@@ -1,7 +1,6 @@
 #include "PageSelection.h"
 
 #include "../context/Matrices.h"
-#include "../context/ReportOnce.h"
 #include "../context/Statistics.h"
 #include "../textures/BrickResidency.h"
 #include "../volume/PixelFootprint.h"
@@ -336,6 +335,7 @@ void PageSelection::ask()
 
 void PageSelection::report() const
 {
+    if (!collectingStats(_visitor.getCurrentCamera())) return;
     const std::pair<const char*, std::int64_t> values[] = {
         {"osgVolumizer pages wanted", static_cast<std::int64_t>(_nodes.size())},
         {"osgVolumizer pages missing", _missing},

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <thread>
 
 namespace osgVolumizer {
@@ -54,7 +53,9 @@ void PageQueue::ask(const std::shared_ptr<PageKeeper>& keeper, std::uint64_t vie
                (wanted.identity == keeper.get() && wanted.viewId == viewId);
     });
     if (requests.empty()) return;
-    const auto isKeeper = [&](const std::weak_ptr<PageKeeper>& k) { return k.lock() == keeper; };
+    const auto isKeeper = [&](const std::weak_ptr<PageKeeper>& k) {
+        return !k.owner_before(keeper) && !keeper.owner_before(k);
+    };
     _keepers.erase(
         std::remove_if(_keepers.begin(), _keepers.end(), [](const auto& k) { return k.expired(); }),
         _keepers.end());
@@ -80,26 +81,11 @@ std::int64_t PageQueue::heldBytes() const
     return _held;
 }
 
-std::int64_t PageQueue::mostHeldBytes() const
-{
-    std::lock_guard<std::mutex> lock(_mutex);
-    return _mostHeld;
-}
-
 void PageQueue::released(std::int64_t bytes)
 {
     std::lock_guard<std::mutex> lock(_mutex);
     _held -= bytes;
     _changed.notify_all();
-}
-
-std::int64_t PageQueue::pendingCount() const
-{
-    std::lock_guard<std::mutex> lock(_mutex);
-    auto count = static_cast<std::int64_t>(_reading);
-    for (const Wanted& wanted : _wanted)
-        count += static_cast<std::int64_t>(wanted.requests.size());
-    return count;
 }
 
 // Expects the lock. False where nothing is wanted.
@@ -131,10 +117,11 @@ bool PageQueue::makeRoom(std::unique_lock<std::mutex>& lock, std::int64_t bytes)
     const std::vector<std::weak_ptr<PageKeeper>> keepers = _keepers;
     std::int64_t over = _held + bytes - budget;
     for (auto next = keepers.begin(); over > 0 && next != keepers.end(); ++next) {
-        const std::shared_ptr<PageKeeper> keeper = next->lock();
+        std::shared_ptr<PageKeeper> keeper = next->lock();
         if (!keeper) continue;
         lock.unlock();
         const std::int64_t freed = keeper->release(over);
+        keeper = nullptr; // which may be its end, and that asks for the lock
         lock.lock();
         _held -= freed;
         over = _held + bytes - budget;
@@ -142,7 +129,6 @@ bool PageQueue::makeRoom(std::unique_lock<std::mutex>& lock, std::int64_t bytes)
     // A page that is larger than all there is room for is read when nothing else is held.
     if (over > 0 && _held > 0) return false;
     _held += bytes;
-    _mostHeld = std::max(_mostHeld, _held);
     return true;
 }
 
@@ -170,7 +156,6 @@ void PageQueue::work()
         lock.lock();
         --_reading;
         _held += kept - job.request.bytes;
-        _mostHeld = std::max(_mostHeld, _held);
         _changed.notify_all();
     }
     --_threads;

@@ -59,12 +59,8 @@ public:
 
     /// Bytes that are held of pages, those that are being read included.
     std::int64_t heldBytes() const;
-    /// The most that heldBytes() has been since construction.
-    std::int64_t mostHeldBytes() const;
     /// Tells of bytes that a keeper has let go of by itself.
     void released(std::int64_t bytes);
-    /// Pages that are wanted, or are being read.
-    std::int64_t pendingCount() const;
 
     /// Takes nothing any more, and waits for what is being read, for two seconds at most: the end
     /// of the process.
@@ -96,7 +92,7 @@ private:
     std::condition_variable _changed;
     std::list<Wanted> _wanted;
     std::vector<std::weak_ptr<PageKeeper>> _keepers; ///< that were asked
-    std::int64_t _held = 0, _mostHeld = 0;
+    std::int64_t _held = 0;
     int _threads = 0, _reading = 0;
     bool _stopping = false;
 };

@@ -3,13 +3,10 @@
 #include "../../Paging.h"
 #include "Texels.h"
 
-#include "../../core/voxels/VoxelData.h"
-
 #include <osg/Timer>
 #include <osg/observer_ptr>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -54,15 +51,6 @@ struct Registry
     }
 };
 
-std::atomic<std::int64_t> mostBytes{0};
-
-void raise(std::atomic<std::int64_t>& most, std::int64_t value)
-{
-    std::int64_t known = most;
-    while (value > known && !most.compare_exchange_weak(known, value)) {
-    }
-}
-
 } // namespace
 
 std::shared_ptr<Pages> Pages::create()
@@ -77,10 +65,16 @@ std::shared_ptr<Pages> Pages::create()
 Pages::~Pages()
 {
     PageQueue::instance().forget(*this);
+    PageQueue::instance().released(bytesOf(_entries));
+}
+
+// Of the texels in memory.
+std::int64_t Pages::bytesOf(const std::map<Key, Entry>& entries)
+{
     std::int64_t bytes = 0;
-    for (const auto& entry : _entries)
+    for (const auto& entry : entries)
         if (entry.second.texels) bytes += entry.second.bytes;
-    PageQueue::instance().released(bytes);
+    return bytes;
 }
 
 void Pages::begin(const Voxels& voxels)
@@ -97,10 +91,7 @@ void Pages::begin(const Voxels& voxels)
         _reported = false;
         forgotten.swap(_entries);
     }
-    std::int64_t bytes = 0;
-    for (const auto& entry : forgotten)
-        if (entry.second.texels) bytes += entry.second.bytes;
-    if (bytes > 0) PageQueue::instance().released(bytes);
+    PageQueue::instance().released(bytesOf(forgotten));
 }
 
 Pages::Page Pages::look(const Look& look)
@@ -285,9 +276,7 @@ void Pages::makeRoom(osg::State& state, const BrickTexture& texture)
     for (const auto& pages : all)
         for (const auto& other : pages->textures())
             if (other != &texture) others.push_back(other);
-    const std::int64_t held =
-        keepWithin(getPagingBudget().textureBytes - texture.bytes(), others, state);
-    raise(mostBytes, held + texture.bytes());
+    keepWithin(getPagingBudget().textureBytes - texture.bytes(), others, state);
     for (const auto& pages : all) {
         std::lock_guard<std::mutex> lock(pages->_mutex);
         for (auto next = pages->_entries.begin(); next != pages->_entries.end();) {
@@ -306,11 +295,6 @@ std::int64_t Pages::textureBytes(unsigned contextId)
         for (const auto& texture : pages->textures())
             if (texture->isIn(contextId)) sum += texture->bytes();
     return sum;
-}
-
-std::int64_t Pages::mostTextureBytes()
-{
-    return mostBytes;
 }
 
 void Pages::resizeGLObjectBuffers(unsigned int maximum)

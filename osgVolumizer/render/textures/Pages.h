@@ -73,8 +73,6 @@ public:
     static void makeRoom(osg::State& state, const BrickTexture& texture);
     /// Of the textures of all paged voxels in a context.
     static std::int64_t textureBytes(unsigned contextId);
-    /// The most that they have been right after an upload, in any context.
-    static std::int64_t mostTextureBytes();
 
     std::int64_t read(const Key& key) override;
     std::int64_t release(std::int64_t bytes) override;
@@ -101,6 +99,7 @@ private:
     };
 
     Pages() = default;
+    static std::int64_t bytesOf(const std::map<Key, Entry>& entries);
     void fail(const Key& key, const Status& status);
     std::vector<osg::ref_ptr<BrickTexture>> textures() const;
     std::vector<std::shared_ptr<PageCells>> cells() const;

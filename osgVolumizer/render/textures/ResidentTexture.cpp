@@ -6,9 +6,8 @@
 namespace osgVolumizer {
 namespace render {
 
-std::int64_t keepWithin(std::int64_t room,
-                        const std::vector<osg::ref_ptr<ResidentTexture>>& textures,
-                        osg::State& state)
+void keepWithin(std::int64_t room, const std::vector<osg::ref_ptr<ResidentTexture>>& textures,
+                osg::State& state)
 {
     std::int64_t held = 0;
     std::vector<std::tuple<unsigned, float, ResidentTexture*>> byUse;
@@ -17,14 +16,13 @@ std::int64_t keepWithin(std::int64_t room,
         held += texture->bytes();
         byUse.emplace_back(texture->lastFrame(), texture->priority(), texture.get());
     }
-    if (held <= room) return held;
+    if (held <= room) return;
     std::sort(byUse.begin(), byUse.end());
     for (auto next = byUse.begin(); held > room && next != byUse.end(); ++next) {
         ResidentTexture& texture = *std::get<2>(*next);
         held -= texture.bytes();
         texture.releaseGLObjects(&state);
     }
-    return held;
 }
 
 } // namespace render

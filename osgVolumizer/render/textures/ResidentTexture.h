@@ -44,10 +44,9 @@ private:
 
 /// Releases textures in the context of a state until those that are left have no more bytes than
 /// there is room for: first those that no frame has asked for longest, and of the same frame the
-/// least important. Returns the bytes that are left.
-std::int64_t keepWithin(std::int64_t room,
-                        const std::vector<osg::ref_ptr<ResidentTexture>>& textures,
-                        osg::State& state);
+/// least important.
+void keepWithin(std::int64_t room, const std::vector<osg::ref_ptr<ResidentTexture>>& textures,
+                osg::State& state);
 
 } // namespace render
 } // namespace osgVolumizer
