@@ -221,7 +221,7 @@ std::optional<std::pair<double, double>> Voxels::knownRange(int level,
 {
     // A user's source may throw; nothing may pass from here through OSG's callbacks.
     try {
-        return level == 0 ? _source->valueRange(samples) : _source->levelRange(level, samples);
+        return _source->levelRange(level, samples);
     } catch (...) {
         return std::nullopt;
     }
@@ -363,8 +363,7 @@ Voxels::Block Voxels::readBrick(int level, const core::Box3i& samples, bool& sha
         shared = own && own.bytes == static_cast<std::size_t>(bytes);
         if (shared) return own;
         std::shared_ptr<unsigned char[]> data(new unsigned char[static_cast<std::size_t>(bytes)]);
-        status = level == 0 ? _source->read(samples, data.get())
-                            : _source->readLevel(level, samples, data.get());
+        status = _source->readLevel(level, samples, data.get());
         if (status.ok()) return {data, data.get(), static_cast<std::size_t>(bytes)};
     } catch (const std::bad_alloc&) {
         status = {ErrorCode::TOO_LARGE, "there is no memory for a brick of voxels"};

@@ -171,9 +171,8 @@ Status PyramidWriter::reopen()
 
 Status PyramidWriter::unwritable(OIIO::ImageOutput& out) const
 {
-    std::string text = out.geterror();
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return {ErrorCode::FILE_UNREADABLE, _fileName + " cannot be written: " + text};
+    return {ErrorCode::FILE_UNREADABLE,
+            _fileName + " cannot be written: " + io::oneLine(out.geterror())};
 }
 
 Status PyramidWriter::open(OIIO::ImageOutput& out, const OIIO::ImageSpec& spec) const

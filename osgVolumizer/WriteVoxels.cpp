@@ -17,13 +17,8 @@ namespace osgVolumizer {
 namespace {
 
 namespace fs = std::filesystem;
+using io::oneLine;
 using io::typeDescOf;
-
-std::string oneLine(std::string text)
-{
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return text;
-}
 
 OIIO::ImageSpec specOf(const VoxelSource::Description& d)
 {

@@ -67,13 +67,15 @@ int write(const VoxelSource& source, const std::string& fileName, bool quiet)
     return DONE;
 }
 
+Result<osg::ref_ptr<Voxels>> read(const std::string& in, bool quiet)
+{
+    ProgressLine line("reading " + in, quiet);
+    return readVoxels(in, nullptr, std::ref(line));
+}
+
 int convert(const std::string& in, const std::string& out, bool quiet)
 {
-    Result<osg::ref_ptr<Voxels>> voxels(Status{});
-    {
-        ProgressLine line("reading " + in, quiet);
-        voxels = readVoxels(in, nullptr, std::ref(line));
-    }
+    const Result<osg::ref_ptr<Voxels>> voxels = read(in, quiet);
     if (!voxels.ok()) return fail(FAILED, voxels.status.text);
     return write(*(*voxels)->getSource(), out, quiet);
 }
@@ -82,15 +84,14 @@ int convert(const std::string& in, const std::string& out, bool quiet)
 std::string originOf(const std::string& in)
 {
     std::error_code unknown;
-    std::string text = in;
     const std::string file = in.substr(0, in.find(','));
     for (const std::string& name : {in, file.substr(0, file.rfind('.'))}) {
         const auto bytes = std::filesystem::file_size(name, unknown);
         if (unknown) continue;
         const auto time = std::filesystem::last_write_time(name, unknown).time_since_epoch();
-        return text + ", " + std::to_string(bytes) + " bytes of " + std::to_string(time.count());
+        return in + ", " + std::to_string(bytes) + " bytes of " + std::to_string(time.count());
     }
-    return text;
+    return in;
 }
 
 int makePyramid(const std::vector<std::string>& arguments, const std::string& rule, bool quiet)
@@ -99,11 +100,7 @@ int makePyramid(const std::vector<std::string>& arguments, const std::string& ru
     if (rule != "mean" && rule != "mode")
         return fail(USAGE, "option \"--levels\" is \"" + rule + "\", neither mean nor mode");
     const std::string &in = arguments[0], &out = arguments[1];
-    Result<osg::ref_ptr<Voxels>> voxels(Status{});
-    {
-        ProgressLine line("reading " + in, quiet);
-        voxels = readVoxels(in, nullptr, std::ref(line));
-    }
+    const Result<osg::ref_ptr<Voxels>> voxels = read(in, quiet);
     if (!voxels.ok()) return fail(FAILED, voxels.status.text);
     PyramidOptions options;
     options.rule = rule == "mode" ? core::LevelRule::MODE : core::LevelRule::MEAN;

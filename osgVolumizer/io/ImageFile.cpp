@@ -6,6 +6,7 @@
 #include "../core/Text.h"
 #include "../core/voxels/VoxelData.h"
 #include "../core/voxels/VoxelDispatch.h"
+#include "OiioTypes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,12 +28,6 @@ std::int64_t fileBytes(const std::string& path)
     std::error_code failed;
     const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
     return failed ? 0 : static_cast<std::int64_t>(bytes);
-}
-
-std::string oneLine(std::string text)
-{
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return text;
 }
 
 bool isRgba(const OIIO::ImageSpec& spec)

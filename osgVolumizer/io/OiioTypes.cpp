@@ -1,5 +1,7 @@
 #include "OiioTypes.h"
 
+#include <algorithm>
+
 namespace osgVolumizer {
 namespace io {
 
@@ -26,6 +28,12 @@ OIIO::TypeDesc typeDescOf(VoxelType type)
         return OIIO::TypeDesc::DOUBLE;
     }
     return OIIO::TypeDesc::UNKNOWN;
+}
+
+std::string oneLine(std::string text)
+{
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
 }
 
 } // namespace io

@@ -1,6 +1,7 @@
 #include "PyramidFormat.h"
 
 #include "../core/Text.h"
+#include "OiioTypes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,13 +45,11 @@ Result<core::BrickTree> PyramidFormat::tree() const
 std::string PyramidFormat::text() const
 {
     const VoxelSource::Description& d = description;
-    std::string line = origin;
-    std::replace(line.begin(), line.end(), '\n', ' ');
     return std::string(MAGIC) + " 1\nsize " + core::formatTriple(d.size) + "\ntype " +
            voxelTypeName(d.type) + "\ncomponents " + std::to_string(d.components) + "\nspacing " +
            numbers(&d.spacing[0], 3) + "\norigin " + numbers(&d.origin[0], 3) + "\naxes " +
            numbers(&d.axes[0][0], 9) + "\nrule " +
-           (rule == core::LevelRule::MODE ? "mode" : "mean") + "\nfrom " + line;
+           (rule == core::LevelRule::MODE ? "mode" : "mean") + "\nfrom " + oneLine(origin);
 }
 
 bool PyramidFormat::isPyramid(const std::string& description)

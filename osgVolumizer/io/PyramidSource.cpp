@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
-#include <limits>
 
 namespace osgVolumizer {
 namespace io {
@@ -59,8 +58,7 @@ void copyPart(const std::vector<unsigned char>& tile, const core::Box3i& tileBox
         }
 }
 
-} // namespace
-
+// The bricks of a level that hold the samples of a region as their own.
 core::Box3i bricksOf(const core::BrickTree& tree, int level, const core::Box3i& region)
 {
     core::Box3i bricks;
@@ -71,6 +69,17 @@ core::Box3i bricksOf(const core::BrickTree& tree, int level, const core::Box3i& 
     }
     return bricks;
 }
+
+// The bricks that a region is read from: one where that has all of it, as of what a renderer asks
+// for.
+core::Box3i bricksToRead(const core::BrickTree& tree, int level, const core::Box3i& region)
+{
+    const glm::ivec3 middle = (region.min + region.max) / 2;
+    const core::Box3i one = bricksOf(tree, level, {middle, middle + 1});
+    return holds(samplesOf(one.min), region) ? one : bricksOf(tree, level, region);
+}
+
+} // namespace
 
 /// Open inputs of a file: one for each thread that reads at a time.
 class PyramidSource::Files
@@ -123,8 +132,7 @@ bool PyramidSource::isPyramid(const std::string& path)
 
 std::string PyramidSource::reason(OIIO::ImageInput& input) const
 {
-    std::string text = input.geterror();
-    std::replace(text.begin(), text.end(), '\n', ' ');
+    const std::string text = oneLine(input.geterror());
     return text.empty() ? "" : ": " + text;
 }
 
@@ -246,11 +254,8 @@ Status PyramidSource::readLevel(int level, const core::Box3i& region, void* dest
     const auto voxel = voxelTypeSize(d.type) * std::size_t(d.components);
     auto* out = static_cast<unsigned char*>(destination);
     std::vector<unsigned char> tile(std::size_t(TILE) * TILE * TILE * voxel);
-    // What a renderer asks for is in one brick.
-    const core::Box3i middle{(region.min + region.max) / 2, (region.min + region.max) / 2 + 1};
-    core::Box3i bricks = bricksOf(_tree, level, middle);
-    const bool one = holds(samplesOf(bricks.min), region);
-    if (!one) bricks = bricksOf(_tree, level, region);
+    const core::Box3i bricks = bricksToRead(_tree, level, region);
+    const bool one = core::sampleCount(bricks.size()) == 1;
     for (int k = bricks.min.z; k < bricks.max.z; ++k)
         for (int j = bricks.min.y; j < bricks.max.y; ++j)
             for (int i = bricks.min.x; i < bricks.max.x; ++i) {
@@ -274,9 +279,7 @@ std::optional<std::pair<double, double>> PyramidSource::levelRange(int level,
                                                                    const core::Box3i& region) const
 {
     if (region.empty() || level < 0 || level >= _tree.levelCount()) return std::nullopt;
-    const core::Box3i middle{(region.min + region.max) / 2, (region.min + region.max) / 2 + 1};
-    core::Box3i bricks = bricksOf(_tree, level, middle);
-    if (!holds(samplesOf(bricks.min), region)) bricks = bricksOf(_tree, level, region);
+    const core::Box3i bricks = bricksToRead(_tree, level, region);
     core::ValueRange range;
     for (int k = bricks.min.z; k < bricks.max.z; ++k)
         for (int j = bricks.min.y; j < bricks.max.y; ++j)

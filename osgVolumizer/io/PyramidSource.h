@@ -32,7 +32,6 @@ public:
     Status open(const std::string& path, bool whole = true);
 
     const PyramidFormat& format() const { return _format; }
-    const core::BrickTree& tree() const { return _tree; }
     /// Pages that are there: of a whole one, two for each layer of each level.
     int pageCount() const { return _pageCount; }
     /// By the tree's number.
@@ -76,9 +75,6 @@ private:
     std::vector<std::pair<double, double>> _ranges; ///< by the tree's numbers
     std::shared_ptr<Files> _files;
 };
-
-/// The bricks of a level, per axis, that hold the samples of a region as their own.
-core::Box3i bricksOf(const core::BrickTree& tree, int level, const core::Box3i& region);
 
 } // namespace io
 } // namespace osgVolumizer
