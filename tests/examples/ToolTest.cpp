@@ -2,6 +2,8 @@
 #include <osgVolumizer/ReadVoxels.h>
 #include <osgVolumizer/core/voxels/VoxelData.h>
 
+#include "../support/FolderTest.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,27 +22,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-class Tool : public testing::Test
+class Tool : public support::FolderTest
 {
 protected:
-    void SetUp() override
-    {
-        const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-        _folder = fs::path(testing::TempDir()) / ("osgVolumizerTool" + name);
-        fs::remove_all(_folder);
-        fs::create_directories(_folder);
-    }
-    void TearDown() override { fs::remove_all(_folder); }
-    std::string path(const std::string& name) const { return (_folder / name).string(); }
-    std::string writeBytes(const std::string& name, const std::string& bytes) const
-    {
-        std::ofstream(path(name), std::ios::binary) << bytes;
-        return path(name);
-    }
     /// Runs the tool in the test's folder; its exit status.
     int run(const std::string& arguments)
     {
-        const std::string command = "cd '" + _folder.string() +
+        const std::string command = "cd '" + folder().string() +
                                     "' && '" OSGVOLUMIZER_BINARY_DIR "/bin/osgvolumizertool' " +
                                     arguments + " 2>&1";
         FILE* pipe = popen(command.c_str(), "r");
@@ -53,9 +41,6 @@ protected:
     }
     bool says(const std::string& text) const { return output.find(text) != std::string::npos; }
     std::string output;
-
-private:
-    fs::path _folder;
 };
 
 std::vector<double> values(const Voxels& voxels)

@@ -2,6 +2,7 @@
 #include <osgVolumizer/WritePyramid.h>
 #include <osgVolumizer/core/voxels/VoxelData.h>
 
+#include "../support/FolderTest.h"
 #include "../support/LeaksOfOthers.h"
 
 #include <OpenImageIO/imageio.h>
@@ -65,21 +66,13 @@ public:
     mutable int reads = 0;
 };
 
-class Pyramid : public testing::Test
+class Pyramid : public support::FolderTest
 {
 protected:
-    void SetUp() override
-    {
-        const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-        _folder = fs::path(testing::TempDir()) / ("osgVolumizerPyramid" + name);
-        fs::remove_all(_folder);
-        fs::create_directories(_folder);
-    }
-    void TearDown() override { fs::remove_all(_folder); }
-    std::string path(const std::string& name = "a.tif") const { return (_folder / name).string(); }
+    std::string path(const std::string& name = "a.tif") const { return FolderTest::path(name); }
     int files() const
     {
-        return int(std::distance(fs::directory_iterator(_folder), fs::directory_iterator()));
+        return int(std::distance(fs::directory_iterator(folder()), fs::directory_iterator()));
     }
     osg::ref_ptr<VoxelSource> open(const std::string& name = "a.tif") const
     {
@@ -94,8 +87,6 @@ protected:
         EXPECT_FALSE(voxels.ok());
         return voxels.status.text;
     }
-
-    fs::path _folder;
 };
 
 // All samples of a level, and of the one that it was made from, the next.

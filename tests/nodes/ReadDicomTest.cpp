@@ -3,6 +3,8 @@
 #include <osgVolumizer/VolumeGeometry.h>
 #include <osgVolumizer/core/voxels/VoxelData.h>
 
+#include "../support/FolderTest.h"
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <osg/Notify>
@@ -85,25 +87,19 @@ struct Dicom
     }
 };
 
-class ReadDicom : public testing::Test
+class ReadDicom : public support::FolderTest
 {
 protected:
     void SetUp() override
     {
-        const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-        _folder = fs::path(testing::TempDir()) / ("osgVolumizerDicom" + name);
-        fs::remove_all(_folder);
-        fs::create_directories(_folder);
+        FolderTest::SetUp();
         values.resize(12);
         std::iota(values.begin(), values.end(), -5);
         file.setValues(values);
     }
-    void TearDown() override { fs::remove_all(_folder); }
-    std::string path(const std::string& name) const { return (_folder / name).string(); }
     std::string write(const std::string& name, const std::string& bytes) const
     {
-        std::ofstream(path(name), std::ios::binary) << bytes;
-        return path(name);
+        return writeBytes(name, bytes);
     }
     static std::vector<double> read(const std::string& name, VoxelType type)
     {
@@ -129,9 +125,6 @@ protected:
 
     Dicom file;
     std::vector<int> values; ///< -5 ... 6
-
-private:
-    fs::path _folder;
 };
 
 std::vector<double> scaled(const std::vector<int>& values, double slope, double intercept)

@@ -1,6 +1,7 @@
 #include <osgVolumizer/Paging.h>
 #include <osgVolumizer/ReadVoxels.h>
 
+#include "../support/FolderTest.h"
 #include "../support/LeaksOfOthers.h"
 
 #include <OpenImageIO/imageio.h>
@@ -19,24 +20,9 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A fresh folder for one test, removed afterwards.
-class ReadVoxels : public testing::Test
+class ReadVoxels : public support::FolderTest
 {
 protected:
-    void SetUp() override
-    {
-        const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-        _folder = fs::path(testing::TempDir()) / ("osgVolumizerReadVoxels" + name);
-        fs::remove_all(_folder);
-        fs::create_directories(_folder);
-    }
-    void TearDown() override { fs::remove_all(_folder); }
-    std::string path(const std::string& name) const { return (_folder / name).string(); }
-
-    std::string writeBytes(const std::string& name, const std::string& bytes) const
-    {
-        std::ofstream(path(name), std::ios::binary) << bytes;
-        return path(name);
-    }
     /// Pixels of consecutive values, starting at `first`, in any type and number of channels.
     template <class T>
     std::string writeImage(const std::string& name, OIIO::ImageSpec spec, T first,
@@ -62,9 +48,6 @@ protected:
         spec.attribute("compression", "none");
         return spec;
     }
-
-private:
-    fs::path _folder;
 };
 
 template <class T>

@@ -3,6 +3,8 @@
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/VolumeGeometry.h>
 
+#include "../support/FolderTest.h"
+
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 #include <osg/Transform>
@@ -20,25 +22,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-class VolumeLoader : public testing::Test
+class VolumeLoader : public support::FolderTest
 {
 protected:
     void SetUp() override
     {
         osgDB::Registry::instance()->getLibraryFilePathList().push_front(OSGVOLUMIZER_BINARY_DIR
                                                                          "/lib");
-        const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-        _folder = fs::path(testing::TempDir()) / ("osgVolumizerLoader" + name);
-        fs::remove_all(_folder);
-        fs::create_directories(_folder);
+        FolderTest::SetUp();
         clearLastError();
-    }
-    void TearDown() override { fs::remove_all(_folder); }
-    std::string path(const std::string& name) const { return (_folder / name).string(); }
-    std::string writeBytes(const std::string& name, const std::string& bytes) const
-    {
-        std::ofstream(path(name), std::ios::binary) << bytes;
-        return path(name);
     }
     void writeSlice(const std::string& name) const
     {
@@ -71,9 +63,6 @@ protected:
             n = n->asGroup()->getChild(0);
         return dynamic_cast<VolumeGeometry&>(*n);
     }
-
-private:
-    fs::path _folder;
 };
 
 } // namespace
