@@ -186,6 +186,12 @@ std::vector<Property> makeProperties()
                             "TargetFrameTime", "frametime",
                             "seconds that a frame may take while the view moves; 0: any",
                             core::NOT_NEGATIVE)),
+        sinceVersion(5, number<&A::getTimeStep, &A::setTimeStep>(
+                            "TimeStep", "step", "time step at the beginning", core::FINITE)),
+        sinceVersion(5, number<&A::getTimeRate, &A::setTimeRate>(
+                            "TimeRate", "rate", "time steps a second", core::FINITE)),
+        sinceVersion(5, flag<&A::getTimeBlending, &A::setTimeBlending>(
+                            "TimeBlending", "blending", "of values between time steps")),
     };
 }
 

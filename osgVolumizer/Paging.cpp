@@ -61,6 +61,12 @@ PagingBudget& budgetInForce()
     return budget;
 }
 
+PagingCallback& callbackInForce()
+{
+    static auto* const callback = new PagingCallback; // viewers may outlive what is static
+    return *callback;
+}
+
 } // namespace
 
 PagingBudget defaultPagingBudget()
@@ -86,6 +92,18 @@ PagingBudget getPagingBudget()
 {
     std::lock_guard<std::mutex> lock(mutex);
     return budgetInForce();
+}
+
+void setPagingCallback(PagingCallback callback)
+{
+    std::lock_guard<std::mutex> lock(mutex);
+    callbackInForce() = std::move(callback);
+}
+
+PagingCallback getPagingCallback()
+{
+    std::lock_guard<std::mutex> lock(mutex);
+    return callbackInForce();
 }
 
 } // namespace osgVolumizer

@@ -3,8 +3,15 @@
 #include "Error.h"
 
 #include <cstdint>
+#include <functional>
+
+namespace osg {
+class Camera;
+}
 
 namespace osgVolumizer {
+
+class Voxels;
 
 /// What paged voxels (see Voxels::isPaged()) may take, all of a process together. Held at all
 /// times, but for the one page that is drawn where not even that fits.
@@ -31,5 +38,23 @@ OSGVOLUMIZER_EXPORT PagingBudget defaultPagingBudget();
 OSGVOLUMIZER_EXPORT ReportedStatus setPagingBudget(const PagingBudget& budget);
 /// The default until one is set. Thread safe.
 OSGVOLUMIZER_EXPORT PagingBudget getPagingBudget();
+
+/// What a view is told of paged voxels in it.
+struct PagingEvent
+{
+    const Voxels* voxels = nullptr;
+    const osg::Camera* camera = nullptr; ///< of the view; null without one
+    /// Pages that are missing, of those that the picture should be drawn from: 0 once it is final,
+    /// for this view and, where time goes on, this time step.
+    std::int64_t missing = 0;
+};
+/// Called while a scene is traversed, in whichever thread that is, whenever a view's picture of
+/// paged voxels has become final, or no longer is. It may not change the scene. Viewers of
+/// osgViewer that draw on demand are told to draw until it is final without this.
+using PagingCallback = std::function<void(const PagingEvent&)>;
+/// In place of the one before; none where empty. Thread safe; it may still be called once by a
+/// frame under way.
+OSGVOLUMIZER_EXPORT void setPagingCallback(PagingCallback callback);
+OSGVOLUMIZER_EXPORT PagingCallback getPagingCallback();
 
 } // namespace osgVolumizer

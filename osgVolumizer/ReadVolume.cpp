@@ -20,6 +20,7 @@ namespace osgVolumizer {
 namespace {
 
 constexpr double FRAME_TIME = 1.0 / 15.0; // seconds, while the view moves
+constexpr double TIME_RATE = 10.0;        // steps a second
 constexpr VolumeAppearance::Material MATERIAL{0.35, 0.95, 0.25, 24.0}; // brighter than the default
 constexpr double SLICE_OPACITY = 8.0; // thickness of a slice, in opacity units
 constexpr double SMOOTH = 1.5;        // see core::Preview::smoothness()
@@ -44,7 +45,7 @@ core::ValueRange rangeOf(const Voxels& voxels)
     return {range.x(), range.y()};
 }
 
-// Reads the finest level that is small.
+// Reads the finest level that is small, of the time step in the middle: a fire begins with nothing.
 core::Preview previewOfPages(const Voxels& voxels)
 {
     constexpr std::int64_t SMALL = std::int64_t(1) << 22; // samples
@@ -56,7 +57,7 @@ core::Preview previewOfPages(const Voxels& voxels)
     for (std::int64_t i = tree.index(level, glm::ivec3(0)), end = i + tree.brickCount(level);
          i < end; ++i) {
         const core::Box3i samples = tree.brick(i).samples;
-        const Result<VoxelBlock> block = voxels.readPage(i);
+        const Result<VoxelBlock> block = voxels.readPage(i, voxels.getStepCount() / 2);
         if (block.ok())
             preview.add({block->data, voxels.getType(), voxels.getComponents(), samples.size()},
                         samples.min);
@@ -123,6 +124,8 @@ void setProperties(VolumeAppearance& appearance, const io::VoxelOptions& said,
     if (thin >= 0 && !said.has("unit"))
         appearance.setOpacityUnit(appearance.getVoxels()->getSpacing()[thin] / SLICE_OPACITY);
     if (!said.has("frametime")) appearance.setTargetFrameTime(FRAME_TIME);
+    if (appearance.getVoxels()->getStepCount() > 1 && !said.has("rate") && !said.has("step"))
+        appearance.setTimeRate(TIME_RATE);
     if (!said.has("shading"))
         appearance.setShading(preview && thin < 0 && preview->smoothness() > SMOOTH);
     appearance.setMaterial(MATERIAL);

@@ -17,10 +17,11 @@ namespace osgVolumizer {
 ///
 /// Where nothing is said: createSuggestedTable() makes the table; volumes of one component whose
 /// values run smoothly are lit; views that move get frames of at most 1/15 s, and the exact picture
-/// once they rest; a single slice faces the viewer, unlit and nearly opaque. The appearance's
-/// children are the box, turned as the file (or `orientation`) says, so that heads are up, and
-/// above it an osg::LOD of one level: its bounding sphere is not that of the box but of what the
-/// table shows, for viewers to frame. For that, and for the table, all bricks are read.
+/// once they rest; time steps (series=on) are played, ten a second; a single slice faces the
+/// viewer, unlit and nearly opaque. The appearance's children are the box, turned as the file (or
+/// `orientation`) says, so that heads are up, and above it an osg::LOD of one level: its bounding
+/// sphere is not that of the box but of what the table shows, for viewers to frame. For that, and
+/// for the table, all bricks are read.
 OSGVOLUMIZER_EXPORT Result<osg::ref_ptr<VolumeAppearance>>
 readVolume(const std::string& name, const osgDB::Options* options = nullptr,
            const Progress& progress = {});

@@ -1,5 +1,6 @@
 #include "ReadVoxels.h"
 
+#include "VoxelSeries.h"
 #include "io/PyramidSource.h"
 #include "io/VoxelFiles.h"
 #include "io/VoxelOptions.h"
@@ -10,6 +11,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <optional>
 
 namespace osgVolumizer {
 
@@ -40,20 +42,67 @@ Result<io::Source> readFiles(const Result<std::vector<std::string>>& paths,
     return io::readStack(*paths, progress);
 }
 
+// One file that was found. Raw files are found by readSource().
+Result<io::Source> readFile(const std::string& path, const Progress& progress)
+{
+    if (io::PyramidSource::isPyramid(path)) return io::readPyramid(path);
+    return io::readImage(path, progress);
+}
+
+// The files of a name that stands for several, and for raw ones what they are.
+Result<std::vector<std::string>> listSteps(const std::string& name, const osgDB::Options* options,
+                                           std::optional<io::RawName>& raw)
+{
+    std::string files = name;
+    if (io::looksRaw(name)) {
+        const Result<io::RawName> parsed = io::parseRawName(name);
+        if (!parsed.ok()) return parsed.status;
+        raw = *parsed;
+        files = parsed->fileName;
+    }
+    if (io::looksLikePattern(files)) return io::listPattern(files, searchFolders(options));
+    const std::string path = osgDB::findDataFile(files, options);
+    std::error_code unknown;
+    if (path.empty())
+        return Status(ErrorCode::FILE_NOT_FOUND, "volume \"" + files + "\" was not found");
+    if (!std::filesystem::is_directory(path, unknown))
+        return Status(ErrorCode::VALUE_INVALID,
+                      "a series of time steps is a folder or a pattern such as name%03d.tif");
+    return io::listFolder(path);
+}
+
+Result<io::Source> readSeries(const std::string& name, const osgDB::Options* options,
+                              std::string& found)
+{
+    std::optional<io::RawName> raw;
+    const Result<std::vector<std::string>> paths = listSteps(name, options, raw);
+    if (!paths.ok()) return paths.status;
+    found = inFolderOf(paths->front(), name);
+    const auto open = [paths = *paths, raw](int step) {
+        const std::string& path = paths[std::size_t(step)];
+        return raw ? io::readRaw(*raw, path, {}) : readFile(path, {});
+    };
+    osg::ref_ptr<VoxelSeries> series = new VoxelSeries;
+    const CallerReports quiet;
+    Status status = series->setSteps(static_cast<int>(paths->size()), open);
+    if (!status.ok()) return status;
+    return io::Source(series);
+}
+
 // Also finds the absolute name of the volume.
-Result<io::Source> readSource(std::string name, const osgDB::Options* options,
+Result<io::Source> readSource(std::string name, const osgDB::Options* options, bool series,
                               const Progress& progress, std::string& found)
 {
     while (name.size() > 1 && name.back() == '/')
         name.pop_back();
+    if (series) return readSeries(name, options, found);
     const std::string path = name.empty() ? name : osgDB::findDataFile(name, options);
     if (!path.empty()) {
         found = inFolderOf(path, name);
         std::error_code unknown; // OSG takes sockets for folders
         if (std::filesystem::is_directory(path, unknown))
             return readFiles(io::listFolder(path), progress);
-        if (io::PyramidSource::isPyramid(path)) return io::readPyramid(path);
-        Result<io::Source> source = io::readImage(path, progress);
+        Result<io::Source> source = readFile(path, progress);
         if (source.ok() && io::isSliceOfSeries(path))
             OSG_NOTICE << "osgVolumizer: " << path << " is one slice of a series; the name of its "
                        << "folder opens all that lie there" << std::endl;
@@ -120,8 +169,8 @@ Result<osg::ref_ptr<Voxels>> read(const std::string& name, const osgDB::Options*
         OSG_INFO << "osgVolumizer: " << name << ": option \"" << option
                  << "\" is none of a volume's, and left to others" << std::endl;
     std::string found;
-    Result<osg::ref_ptr<Voxels>> voxels =
-        makeVoxels(readSource(name, options, progress, found), *said, name);
+    Result<osg::ref_ptr<Voxels>> voxels = makeVoxels(
+        readSource(name, options, said->series.value_or(false), progress, found), *said, name);
     if (!voxels.ok()) return voxels;
     (*voxels)->setFileName(name);
     (*voxels)->setFilePath(found);

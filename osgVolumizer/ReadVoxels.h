@@ -22,12 +22,15 @@ using Progress = std::function<void(double fraction)>;
 /// - a raw file as "name.raw.256,256,110,uint8[,headerBytes[,big|little]]".
 /// A raw file stays open and is read brick by brick, as bricks are asked for; all others are read
 /// into memory.
+/// With series=on, a folder's files, or those of a pattern ("flow%03d.tif",
+/// "flow%03d.raw.64,64,64,float32"), are volumes of one size and type, one for each time step: see
+/// VoxelSeries, which opens each when it is shown.
 /// Image row 0 is j = 0, the first slice k = 0. A single slice is drawn as thick as its spacing.
 /// Four channels R, G, B, A make RGBA voxels, R, G, B their luminance, anything else its first
 /// channel.
 ///
 /// The option string of `options` holds, separated by blanks and all optional:
-///   spacing=x,y,z  origin=x,y,z  range=low,high  brick=n | brick=x,y,z  overlap=n
+///   spacing=x,y,z  origin=x,y,z  range=low,high  brick=n | brick=x,y,z  overlap=n  series=on | off
 /// Others are left alone: they may be readVolume()'s, or another loader's. The result refers to the
 /// file by the name and options given here.
 ///

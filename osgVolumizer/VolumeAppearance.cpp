@@ -5,6 +5,9 @@
 #include "private/Flattening.h"
 #include "private/Renderer.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace osgVolumizer {
 
 namespace {
@@ -35,6 +38,7 @@ VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp&
       _shading(o._shading), _material(o._material), _gradients(o._gradients),
       _combineRule(o._combineRule), _accumulationBits(o._accumulationBits), _sampling(o._sampling),
       _errorTolerance(o._errorTolerance), _targetFrameTime(o._targetFrameTime),
+      _timeStep(o._timeStep), _timeRate(o._timeRate), _timeBlending(o._timeBlending),
       _opacityUnit(o._opacityUnit)
 {
 }
@@ -151,6 +155,34 @@ ReportedStatus VolumeAppearance::setTargetFrameTime(double seconds)
         return refuse(*this, "target frame time", seconds, core::NOT_NEGATIVE.expected);
     _targetFrameTime = seconds;
     return {};
+}
+
+ReportedStatus VolumeAppearance::setTimeStep(double step)
+{
+    if (!core::FINITE.holds(step)) return refuse(*this, "time step", step, core::FINITE.expected);
+    _timeStep = step;
+    return {};
+}
+
+ReportedStatus VolumeAppearance::setTimeRate(double stepsPerSecond)
+{
+    if (!core::FINITE.holds(stepsPerSecond))
+        return refuse(*this, "time rate", stepsPerSecond, core::FINITE.expected);
+    _timeRate = stepsPerSecond;
+    return {};
+}
+
+double VolumeAppearance::getTimeStepAt(double simulationTime) const
+{
+    const int count = _voxels ? _voxels->getStepCount() : 1;
+    const double last = count - 1.0;
+    if (count == 1) return 0.0;
+    if (_timeRate == 0.0) return std::clamp(_timeStep, 0.0, last);
+    const double period = _timeBlending ? last : double(count);
+    const double step = std::fmod(_timeStep + _timeRate * simulationTime, period);
+    if (!std::isfinite(step)) return 0.0; // times beyond what a number can tell apart
+    const double held = step < 0.0 ? step + period : step;
+    return held < period ? held : 0.0;
 }
 
 ReportedStatus VolumeAppearance::setOpacityUnit(double objectUnits)

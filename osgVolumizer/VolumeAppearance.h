@@ -204,6 +204,23 @@ public:
     ReportedStatus setTargetFrameTime(double seconds);
     double getTargetFrameTime() const { return _targetFrameTime; }
 
+    /// Of voxels with time steps (see VoxelSource::stepCount()): the step that is shown at
+    /// simulation time 0 of the viewer's frame stamp, and by how many it moves on in a second of
+    /// it, over and over: forwards or, below 0, backwards; 0 (default): not at all. Finite. A step
+    /// that is not there yet is shown once all of it is, and until then the one before.
+    ReportedStatus setTimeStep(double step);
+    double getTimeStep() const { return _timeStep; }
+    ReportedStatus setTimeRate(double stepsPerSecond);
+    double getTimeRate() const { return _timeRate; }
+    /// On: values between two steps are interpolated linearly, and the last step is followed by
+    /// the first at once; about half as fast. Off (default): those of the step before. No effect
+    /// with PAINT.
+    void setTimeBlending(bool blending) { _timeBlending = blending; }
+    bool getTimeBlending() const { return _timeBlending; }
+    /// The step at a simulation time in seconds, 0 to the number of steps: within [i, i + 1) step i
+    /// is shown, or a blend of i and i + 1.
+    double getTimeStepAt(double simulationTime) const;
+
     /// Thickness, in object units, of the layer that the table's opacity is stated for; 0 (default)
     /// takes the voxels' mean spacing. Else from 1e-18 to 1e18, which floats can still square.
     ReportedStatus setOpacityUnit(double objectUnits);
@@ -256,6 +273,8 @@ private:
     int _accumulationBits = 32;
     core::SamplingParameters _sampling;
     double _errorTolerance = 0.0, _targetFrameTime = 0.0;
+    double _timeStep = 0.0, _timeRate = 0.0;
+    bool _timeBlending = false;
     double _opacityUnit = 0.0;
     mutable RenderDataSlot _renderData; // textures of the table, sampling that was chosen
 };

@@ -122,12 +122,17 @@ osg::ref_ptr<VolumeGeometry> VolumeGeometry::createBox(const Voxels& voxels)
 osg::ref_ptr<VolumeGeometry> VolumeGeometry::createBox(const osg::BoundingBoxd& box,
                                                        BoxTessellation tessellation)
 {
-    const core::Box3d b{{box.xMin(), box.yMin(), box.zMin()}, {box.xMax(), box.yMax(), box.zMax()}};
     osg::ref_ptr<VolumeGeometry> geometry = new VolumeGeometry;
-    geometry->setTetraSet(tessellation == ENCLOSING     ? enclosingTetrahedron(b)
-                          : tessellation == TWENTY_FOUR ? twentyFourTetrahedra(b)
-                                                        : fiveTetrahedra(b));
+    geometry->setBox(box, tessellation);
     return geometry;
+}
+
+ReportedStatus VolumeGeometry::setBox(const osg::BoundingBoxd& box, BoxTessellation tessellation)
+{
+    const core::Box3d b{{box.xMin(), box.yMin(), box.zMin()}, {box.xMax(), box.yMax(), box.zMax()}};
+    return setTetraSet(tessellation == ENCLOSING     ? enclosingTetrahedron(b)
+                       : tessellation == TWENTY_FOUR ? twentyFourTetrahedra(b)
+                                                     : fiveTetrahedra(b));
 }
 
 ReportedStatus VolumeGeometry::setTetraSet(core::TetraSet tetraSet)

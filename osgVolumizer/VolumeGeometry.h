@@ -43,6 +43,10 @@ public:
     static osg::ref_ptr<VolumeGeometry> createBox(const osg::BoundingBoxd& box,
                                                   BoxTessellation tessellation = FIVE);
 
+    /// Makes it that box: moves a region of interest through a volume of which not all is shown.
+    /// Refused as by setTetraSet().
+    ReportedStatus setBox(const osg::BoundingBoxd& box, BoxTessellation tessellation = FIVE);
+
     using TetraSetPtr = std::shared_ptr<const core::TetraSet>;
     /// Takes the tetrahedra; refused (see core::TetraSet::validate) leaves the old ones in place.
     ReportedStatus setTetraSet(core::TetraSet tetraSet);

@@ -3,10 +3,13 @@
 #include "Error.h"
 #include "core/NumberRule.h"
 #include "core/Text.h"
+#include "core/voxels/BrickTree.h"
 #include "core/voxels/VoxelData.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <vector>
 
 namespace osgVolumizer {
 
@@ -59,6 +62,47 @@ std::optional<std::pair<double, double>> VoxelSource::levelRange(int level,
                                                                  const core::Box3i& region) const
 {
     return level == 0 ? valueRange(region) : std::nullopt;
+}
+
+Status VoxelSource::readStep(int step, int level, const core::Box3i& region,
+                             void* destination) const
+{
+    if (step == 0) return readLevel(level, region, destination);
+    return {ErrorCode::INDEX_OUT_OF_RANGE,
+            "the voxel source has no time step " + std::to_string(step)};
+}
+
+std::optional<std::pair<double, double>> VoxelSource::stepRange(int step, int level,
+                                                                const core::Box3i& region) const
+{
+    return step == 0 ? levelRange(level, region) : std::nullopt;
+}
+
+Status VoxelSource::readThinned(int level, const core::Box3i& region, void* destination) const
+{
+    if (level == 0) return read(region, destination);
+    if (region.empty()) return {};
+    const Description d = describe();
+    if (Status status = checkRegion(region, core::BrickTree::levelSize(d.size, level));
+        !status.ok())
+        return status;
+    const std::size_t voxel = voxelTypeSize(d.type) * static_cast<std::size_t>(d.components);
+    const auto at = [&](int i, int axis) {
+        const std::int64_t place = (std::int64_t(i) << level) + (std::int64_t(1) << (level - 1));
+        return static_cast<int>(std::min<std::int64_t>(place, d.size[axis] - 1));
+    };
+    const int first = at(region.min.x, 0), last = at(region.max.x - 1, 0);
+    std::vector<unsigned char> row(std::size_t(last - first + 1) * voxel);
+    auto* to = static_cast<unsigned char*>(destination);
+    for (int z = region.min.z; z < region.max.z; ++z)
+        for (int y = region.min.y; y < region.max.y; ++y) {
+            const glm::ivec3 begin(first, at(y, 1), at(z, 2));
+            Status status = read({begin, {last + 1, begin.y + 1, begin.z + 1}}, row.data());
+            if (!status.ok()) return status;
+            for (int x = region.min.x; x < region.max.x; ++x, to += voxel)
+                std::memcpy(to, row.data() + std::size_t(at(x, 0) - first) * voxel, voxel);
+        }
+    return {};
 }
 
 Status VoxelSource::checkRegion(const core::Box3i& region, const glm::ivec3& size)

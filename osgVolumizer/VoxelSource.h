@@ -77,6 +77,21 @@ public:
     /// Edge of the bricks in which a source of several levels is read best, in samples.
     virtual int pageSize() const { return 64; }
 
+    /// A level of a source that has only the volume: of the samples that one of a level stands for
+    /// the one in the middle. Reads row by row.
+    Status readThinned(int level, const core::Box3i& region, void* destination) const;
+
+    /// How many states of the volume there are, one after another, "time steps": all of the same
+    /// description, levels and page size; step 0 is what the methods above read. A source of more
+    /// than one step is paged, as one of several levels.
+    virtual int stepCount() const { return 1; }
+    /// What readLevel() is for step 0.
+    virtual Status readStep(int step, int level, const core::Box3i& region,
+                            void* destination) const;
+    /// What levelRange() is for step 0.
+    virtual std::optional<std::pair<double, double>> stepRange(int step, int level,
+                                                               const core::Box3i& region) const;
+
 protected:
     VoxelSource() = default;
     /// A copy with CopyOp::DEEP_COPY_OBJECTS is to share nothing that can be changed.

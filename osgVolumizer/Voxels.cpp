@@ -65,7 +65,8 @@ Voxels::Voxels(const Voxels& o, const osg::CopyOp& op)
     : osg::Object(o, op),
       _source(dynamic_cast<VoxelSource*>(op(static_cast<const osg::Object*>(o._source.get())))),
       _description(o._description), _brickSize(o._brickSize), _overlap(o._overlap),
-      _layout(o._layout), _tree(o._tree), _fileName(o._fileName), _filePath(o._filePath),
+      _layout(o._layout), _tree(o._tree), _stepCount(o._stepCount),
+      _textureBudget(o._textureBudget), _fileName(o._fileName), _filePath(o._filePath),
       _fileOptions(o._fileOptions), _layoutCount(nextLayoutCount())
 {
     std::lock_guard<std::mutex> lock(o._rangeMutex);
@@ -97,6 +98,7 @@ ReportedStatus Voxels::setSource(VoxelSource* source)
     _description = description;
     _layout = layout;
     _tree = tree;
+    _stepCount = source ? std::max(source->stepCount(), 1) : 1;
     {
         std::lock_guard<std::mutex> lock(_rangeMutex);
         double low = 0.0, high = 1.0;
@@ -184,55 +186,68 @@ bool Voxels::hasExplicitRange() const
     return _explicitRange;
 }
 
-// No tree for a source that has only the volume.
+// No tree for a source that has only the volume, once.
 Status Voxels::makeTree(const VoxelSource* source, int overlap, core::BrickTree& tree) const
 {
     tree = {};
     const int levels = source ? source->levelCount() : 1;
-    if (levels <= 1) return {};
-    Result<core::BrickTree> made =
-        core::BrickTree::create(source->describe().size, levels, source->pageSize(), overlap);
+    if (levels <= 1 && !(source && source->stepCount() > 1)) return {};
+    Result<core::BrickTree> made = core::BrickTree::create(
+        source->describe().size, std::max(levels, 1), source->pageSize(), overlap);
     if (made.ok()) tree = *made;
     return made.status;
 }
 
-Result<VoxelBlock> Voxels::readPage(std::int64_t page) const
+ReportedStatus Voxels::setTextureBudget(std::int64_t bytes)
+{
+    constexpr std::int64_t LEAST = std::int64_t(1) << 20;
+    if (bytes != 0 && bytes < LEAST)
+        return reported(
+            {ErrorCode::VALUE_INVALID, "texture budget of voxels is " + std::to_string(bytes) +
+                                           " bytes, expected 0, or a megabyte or more"});
+    _textureBudget = bytes;
+    return {};
+}
+
+Result<VoxelBlock> Voxels::readPage(std::int64_t page, int step) const
 {
     const core::TreeBrick brick = _tree.brick(page);
     Status status;
     bool shared = false;
     ++_readCount;
-    Block block = readBrick(brick.level, brick.samples, shared, status);
+    Block block = readBrick(step, brick.level, brick.samples, shared, status);
     if (status.ok()) return block;
-    status.text = "level " + std::to_string(brick.level) + ", brick " +
-                  core::formatTriple(brick.coordinates) +
+    status.text = (_stepCount > 1 ? "time step " + std::to_string(step) + ", " : "") + "level " +
+                  std::to_string(brick.level) + ", brick " + core::formatTriple(brick.coordinates) +
                   (_fileName.empty() ? "" : " of " + _fileName) + ": " + status.text;
     return status;
 }
 
-std::optional<std::pair<double, double>> Voxels::getPageRange(std::int64_t page) const
+std::optional<std::pair<double, double>> Voxels::getPageRange(std::int64_t page, int step) const
 {
     const core::TreeBrick brick = _tree.brick(page);
-    return knownRange(brick.level, brick.samples);
+    return knownRange(step, brick.level, brick.samples);
 }
 
-std::optional<std::pair<double, double>> Voxels::knownRange(int level,
+std::optional<std::pair<double, double>> Voxels::knownRange(int step, int level,
                                                             const core::Box3i& samples) const
 {
     // A user's source may throw; nothing may pass from here through OSG's callbacks.
     try {
-        return _source->levelRange(level, samples);
+        return _source->stepRange(step, level, samples);
     } catch (...) {
         return std::nullopt;
     }
 }
 
-// Of the samples of the coarsest level.
-core::ValueRange Voxels::findCoarsestRange() const
+// As the source knows it, or of the samples of the coarsest level.
+core::ValueRange Voxels::findStepRange(int step) const
 {
     core::ValueRange found;
+    if (const auto known = knownRange(step, 0, {glm::ivec3(0), _description.size}))
+        return {known->first, known->second};
     for (const std::int64_t page : _tree.roots(glm::dvec4(0.0, 0.0, 1.0, 0.0))) {
-        const Result<VoxelBlock> block = readPage(page);
+        const Result<VoxelBlock> block = readPage(page, step);
         if (!block.ok()) continue;
         found.expand(core::scanRange({block->data, _description.type, _description.components,
                                       _tree.brick(page).samples.size()},
@@ -244,10 +259,14 @@ core::ValueRange Voxels::findCoarsestRange() const
 void Voxels::findRange() const
 {
     core::ValueRange found;
-    if (const auto known = knownRange(0, {glm::ivec3(0), _description.size})) {
+    if (isPaged()) {
+        constexpr int MOST = 16; // steps
+        const int count = std::min(_stepCount, MOST);
+        for (int i = 0; i < count; ++i)
+            found.expand(findStepRange(
+                static_cast<int>(std::int64_t(i) * (_stepCount - 1) / std::max(count - 1, 1))));
+    } else if (const auto known = knownRange(0, 0, {glm::ivec3(0), _description.size})) {
         found = {known->first, known->second};
-    } else if (isPaged()) {
-        found = findCoarsestRange();
     } else {
         for (std::int64_t i = 0; i < _layout.brickCount(); ++i) {
             const auto range = getBrickRange(i);
@@ -353,17 +372,17 @@ Voxels::BrickPtr Voxels::findBrick(std::int64_t brick) const
     return found;
 }
 
-Voxels::Block Voxels::readBrick(int level, const core::Box3i& samples, bool& shared,
+Voxels::Block Voxels::readBrick(int step, int level, const core::Box3i& samples, bool& shared,
                                 Status& status) const
 {
     try { // as in knownRange()
         const std::int64_t bytes =
             core::voxelBytes(samples.size(), _description.type, _description.components);
-        const Block own = level == 0 ? _source->share(samples) : Block();
+        const Block own = step == 0 && level == 0 ? _source->share(samples) : Block();
         shared = own && own.bytes == static_cast<std::size_t>(bytes);
         if (shared) return own;
         std::shared_ptr<unsigned char[]> data(new unsigned char[static_cast<std::size_t>(bytes)]);
-        status = _source->readLevel(level, samples, data.get());
+        status = _source->readStep(step, level, samples, data.get());
         if (status.ok()) return {data, data.get(), static_cast<std::size_t>(bytes)};
     } catch (const std::bad_alloc&) {
         status = {ErrorCode::TOO_LARGE, "there is no memory for a brick of voxels"};
@@ -384,7 +403,7 @@ Voxels::Block Voxels::loadBrick(std::int64_t index, Brick& brick) const
     Status status;
     bool shared = false;
     ++_readCount;
-    block = readBrick(0, _layout.brick(index).samples, shared, status);
+    block = readBrick(0, 0, _layout.brick(index).samples, shared, status);
     brick.failed = !status.ok();
     if (block) _cache.add({index, brick.modified}, block, shared);
     if (brick.failed) {
@@ -418,7 +437,7 @@ std::pair<double, double> Voxels::getBrickRange(std::int64_t index) const
     std::lock_guard<std::mutex> lock(brick->mutex);
     if (!brick->rangeKnown) {
         const core::Box3i samples = _layout.brick(index).samples;
-        if (const auto known = knownRange(0, samples)) {
+        if (const auto known = knownRange(0, 0, samples)) {
             brick->range = {known->first, known->second};
         } else if (const Block block = loadBrick(index, *brick)) {
             brick->range = core::scanRange(

@@ -63,7 +63,7 @@ public:
     /// can still divide by. Default: the type's
     /// range for 8 bit and RGBA, else the lowest and highest value found in the data, once, on the
     /// first call of getRange(); that reads all bricks where the source does not know it. Of paged
-    /// voxels setSource() reads the coarsest level for it.
+    /// voxels setSource() reads the coarsest level for it, of at most 16 time steps.
     ReportedStatus setRange(const osg::Vec2d& range);
     osg::Vec2d getRange() const;
     bool hasExplicitRange() const;
@@ -84,16 +84,23 @@ public:
     const core::BrickLayout& getLayout() const { return _layout; }
 
     /// Whether the voxels are drawn from bricks of several levels, read in the background and kept
-    /// within the budgets of Paging.h: so are those whose source has more than one level. Nothing
-    /// of them is read while a scene is traversed or drawn.
+    /// within the budgets of Paging.h: so are those whose source has more than one level or time
+    /// step. Nothing of them is read while a scene is traversed or drawn.
     bool isPaged() const { return _tree.levelCount() > 0; }
     /// The bricks of all levels, "pages": none where the voxels are not paged.
     const core::BrickTree& getTree() const { return _tree; }
+    /// Bound on the textures of these voxels in each context where they are paged, besides that of
+    /// all of them (see Paging.h): for a region of interest that moves through a large volume. Of
+    /// less a coarser level is drawn. Bytes, a megabyte or more; 0 (default): none of its own.
+    ReportedStatus setTextureBudget(std::int64_t bytes);
+    std::int64_t getTextureBudget() const { return _textureBudget; }
+    /// Time steps of the source; 1 where there is none.
+    int getStepCount() const { return _stepCount; }
     /// Reads a page, each time anew; an error is not reported. Thread safe.
-    Result<VoxelBlock> readPage(std::int64_t page) const;
+    Result<VoxelBlock> readPage(std::int64_t page, int step = 0) const;
     /// Lowest and highest value of all that a page stands for, where the source knows them. Thread
     /// safe.
-    std::optional<std::pair<double, double>> getPageRange(std::int64_t page) const;
+    std::optional<std::pair<double, double>> getPageRange(std::int64_t page, int step = 0) const;
 
     /// Bound on the bricks that are kept: 32 MiB.
     static constexpr std::size_t CACHE_BYTES = std::size_t(32) << 20;
@@ -152,11 +159,12 @@ private:
     void forgetBricks();
     BrickPtr findBrick(std::int64_t brick) const;
     Status makeTree(const VoxelSource* source, int overlap, core::BrickTree& tree) const;
-    Block readBrick(int level, const core::Box3i& samples, bool& shared, Status& status) const;
+    Block readBrick(int step, int level, const core::Box3i& samples, bool& shared,
+                    Status& status) const;
     Block loadBrick(std::int64_t index, Brick& brick) const;
-    std::optional<std::pair<double, double>> knownRange(int level,
+    std::optional<std::pair<double, double>> knownRange(int step, int level,
                                                         const core::Box3i& samples) const;
-    core::ValueRange findCoarsestRange() const;
+    core::ValueRange findStepRange(int step) const;
     void findRange() const;
 
     osg::ref_ptr<VoxelSource> _source;
@@ -165,6 +173,8 @@ private:
     int _overlap = 1;
     core::BrickLayout _layout;
     core::BrickTree _tree;
+    int _stepCount = 1;
+    std::int64_t _textureBudget = 0;
     std::string _fileName, _filePath, _fileOptions;
     bool _explicitRange = false;
     mutable bool _rangeKnown = true;

@@ -17,9 +17,10 @@ struct PyramidOptions
 
 /// Writes voxels and coarser copies of them as a tiled, losslessly compressed BigTIFF, which
 /// readVoxels() pages from: io/PyramidFormat.h says what is where in it. Keeps spacing, origin and
-/// axes; half and float64 become float32. Takes some 200 MB of memory, whatever the size of the
-/// volume. Is written as `fileName` with ".part" in front of its extension, and takes its name when
-/// it is whole: what was interrupted is gone on with when it is written again.
+/// axes; half and float64 become float32. Of time steps the first is written. Takes some 200 MB of
+/// memory, whatever the size of the volume. Is written as `fileName` with ".part" in front of its
+/// extension, and takes its name when it is whole: what was interrupted is gone on with when it is
+/// written again.
 ///
 /// Refused: VALUE_INVALID, FILE_UNREADABLE (cannot be written), and what the source refuses.
 OSGVOLUMIZER_EXPORT Status writePyramid(const VoxelSource& source, const std::string& fileName,

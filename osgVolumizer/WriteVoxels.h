@@ -10,7 +10,7 @@ namespace osgVolumizer {
 /// formats that OpenImageIO can put several images in work too; the extension decides. Slice by
 /// slice from the source, so that memory for one slice is enough. Nothing is left behind under
 /// `fileName` unless all of it was written. The file keeps values (TIFF stores half as float32),
-/// not spacing and origin.
+/// not spacing and origin; of time steps the first.
 ///
 /// Refused: NOT_SUPPORTED (extension, or voxel type in this format), FILE_UNREADABLE (cannot be
 /// written).

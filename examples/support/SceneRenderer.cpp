@@ -119,7 +119,7 @@ FloatImage SceneRenderer::render()
     const bool overlapping = _options.threading != osgViewer::ViewerBase::SingleThreaded;
     for (unsigned i = 1; i <= frames; ++i) {
         const auto start = std::chrono::steady_clock::now();
-        _viewer->frame();
+        _viewer->frame(_options.time);
         if (!overlapping && !_target->waitForFrames(i)) break;
         const std::chrono::duration<double, std::milli> time =
             std::chrono::steady_clock::now() - start;

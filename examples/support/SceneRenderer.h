@@ -26,6 +26,7 @@ struct RenderOptions
     osg::Matrixd projection; ///< near and far are moved to the scene while computeNearFar
     osg::Vec4 background{0.0f, 0.0f, 0.0f, 0.0f};
     unsigned frames = 1; ///< the picture is the last one's
+    double time = 0.0;   ///< simulation time of all frames, seconds
     osgViewer::ViewerBase::ThreadingModel threading = osgViewer::ViewerBase::SingleThreaded;
     PictureTarget::Format format = PictureTarget::FLOAT32;
     OffscreenContext::Profile profile = OffscreenContext::COMPATIBILITY;

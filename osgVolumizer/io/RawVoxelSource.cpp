@@ -139,35 +139,10 @@ Status RawVoxelSource::read(const core::Box3i& region, void* destination) const
     return {};
 }
 
-// Row by row, each with what lies between the samples that are taken.
 Status RawVoxelSource::readLevel(int level, const core::Box3i& region, void* destination) const
 {
     if (level <= 0 || level >= _levels) return VoxelSource::readLevel(level, region, destination);
-    if (!_file) return {ErrorCode::VALUE_INVALID, "the voxel source has no file"};
-    if (region.empty()) return {};
-    const glm::ivec3& all = _description.size;
-    if (Status status = checkRegion(region, core::BrickTree::levelSize(all, level)); !status.ok())
-        return status;
-    const auto element = voxelTypeSize(_description.type);
-    const auto at = [&](int i, int axis) {
-        const std::int64_t place = (std::int64_t(i) << level) + (std::int64_t(1) << (level - 1));
-        return std::min<std::int64_t>(place, all[axis] - 1);
-    };
-    const std::int64_t first = at(region.min.x, 0), last = at(region.max.x - 1, 0);
-    std::vector<unsigned char> row(std::size_t(last - first + 1) * element);
-    auto* to = static_cast<unsigned char*>(destination);
-    for (int z = region.min.z; z < region.max.z; ++z)
-        for (int y = region.min.y; y < region.max.y; ++y) {
-            const std::int64_t offset = ((at(z, 2) * all.y + at(y, 1)) * all.x + first) *
-                                        static_cast<std::int64_t>(element);
-            Status status = readBytes(offset, static_cast<std::int64_t>(row.size()), row.data());
-            if (!status.ok()) return status;
-            for (int x = region.min.x; x < region.max.x; ++x, to += element)
-                std::memcpy(to, row.data() + std::size_t(at(x, 0) - first) * element, element);
-        }
-    if (_swaps)
-        core::swapBytes(destination, element, std::size_t(core::sampleCount(region.size())));
-    return {};
+    return readThinned(level, region, destination);
 }
 
 } // namespace io

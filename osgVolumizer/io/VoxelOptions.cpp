@@ -75,6 +75,12 @@ bool setOverlap(VoxelOptions& o, const std::string& text)
     return true;
 }
 
+bool setSeries(VoxelOptions& o, const std::string& text)
+{
+    if (text == "on" || text == "off") o.series = text == "on";
+    return text == "on" || text == "off";
+}
+
 bool setTable(VoxelOptions& o, const std::string& text)
 {
     if (!text.empty()) o.table = text;
@@ -128,6 +134,9 @@ const std::vector<Row>& rows()
         {"overlap", "a number of samples from 0 to 1024", "n",
          "samples that bricks share at least; more where light or cubic interpolation need it",
          setOverlap},
+        {"series", "on or off", "on, off",
+         "files of a folder or a pattern are volumes, one time step each, and not slices",
+         setSeries},
         {"table", "a file name", "file",
          "lookup table, .lut or .tf, beside the volume or on OSG's data path", setTable},
         {"ramp", "centre,width or centre,width,opacity with an opacity from 0 to 1",
@@ -177,6 +186,7 @@ std::string VoxelOptions::voxelText() const
     if (range) add("range", core::formatNumber(range->x) + "," + core::formatNumber(range->y));
     if (brick) add("brick", core::formatTriple(*brick));
     if (overlap) add("overlap", std::to_string(*overlap));
+    if (series) add("series", *series ? "on" : "off");
     return text;
 }
 

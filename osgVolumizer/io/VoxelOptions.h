@@ -24,6 +24,7 @@ struct VoxelOptions
     std::optional<glm::dvec2> range;   ///< data values, low < high
     std::optional<glm::ivec3> brick;   ///< samples, each >= 2
     std::optional<int> overlap;        ///< samples
+    std::optional<bool> series;        ///< the files are time steps, not slices
     std::optional<std::string> table;  ///< file name
     std::optional<glm::dvec3> ramp;    ///< centre and width, fractions of the range; opacity
     std::optional<glm::dmat3> axes;    ///< directions of the voxel axes, a column each

@@ -48,7 +48,8 @@ public:
     /// IsoValue, Shading, Material, Gradients,
     ///    AccumulationBits, ErrorTolerance and TargetFrameTime.
     /// 4: VolumeAppearance has CombineRule, VolumeGeometry SlackAngle.
-    static constexpr int version = 4;
+    /// 5: VolumeAppearance has TimeStep, TimeRate and TimeBlending, Voxels TextureBudget.
+    static constexpr int version = 5;
 
     const std::vector<Field>& fields() const { return _fields; }
     void add(std::string name, Field::Value value, std::size_t valuesPerLine = 8)

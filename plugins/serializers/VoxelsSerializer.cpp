@@ -39,7 +39,7 @@ bool isSerializable(const VoxelSource& source)
 // The voxels of a source that has no form in a scene file, such as a file's.
 Status copyToMemory(const VoxelSource& source, MemoryVoxelSource& copy)
 {
-    if (source.levelCount() > 1)
+    if (source.levelCount() > 1 || source.stepCount() > 1)
         return {
             ErrorCode::NOT_SUPPORTED,
             "voxels of " + std::string(source.className()) +
@@ -152,13 +152,23 @@ Status readRange(const Record& record, Voxels& voxels)
     return status.ok() ? voxels.setRange(osg::Vec2d(values[0], values[1])) : status;
 }
 
+// Since version 5, and only where there is one.
+Status readTextureBudget(const Record& record, Voxels& voxels)
+{
+    Field::Integers bytes;
+    if (!record.has("TextureBudget")) return Status();
+    const Status status = record.get("TextureBudget", 1, bytes);
+    return status.ok() ? voxels.setTextureBudget(bytes[0]) : status;
+}
+
 // Each field by itself, as of an appearance; without the file there is nothing to apply them to.
 Status applyBricks(Record& record, const osgDB::Options* options, Voxels& voxels)
 {
     Status status;
     if (record.has("FileName")) status = readFile(record, options, voxels);
     if (!status.ok()) return status;
-    for (const auto& read : {readBrickSizes, readSpacing, readOrigin, readRange}) {
+    for (const auto& read :
+         {readBrickSizes, readSpacing, readOrigin, readRange, readTextureBudget}) {
         const Status set = read(record, voxels);
         if (status.ok()) status = set;
     }
@@ -179,6 +189,8 @@ void fillBricks(const Voxels& voxels, Record& record, const osgDB::OutputStream&
     record.add("Origin", Field::Doubles{origin.x(), origin.y(), origin.z()});
     if (voxels.hasExplicitRange())
         record.add("Range", Field::Doubles{voxels.getRange().x(), voxels.getRange().y()});
+    if (voxels.getTextureBudget() != 0)
+        record.add("TextureBudget", Field::Integers{voxels.getTextureBudget()});
 }
 
 } // namespace

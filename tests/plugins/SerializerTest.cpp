@@ -219,6 +219,28 @@ TEST_P(SerializerTest, AppearancesKeepRayFunctionsAndShading)
     EXPECT_TRUE(errors().empty()) << errors();
 }
 
+TEST_P(SerializerTest, SeriesAreKeptWithHowTheyArePlayed)
+{
+    for (int step = 0; step < 3; ++step)
+        writeFile("v" + std::to_string(step) + ".raw", std::string(24, static_cast<char>(step)));
+    const auto read = readVoxels(path("v%d.raw") + ".2,3,4,uint8", new osgDB::Options("series=on"));
+    ASSERT_TRUE(read.ok()) << read.status.text;
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    a->setVoxels(read->get());
+    ASSERT_TRUE(a->setTimeStep(1.0 / 3.0));
+    ASSERT_TRUE(a->setTimeRate(-12.5));
+    a->setTimeBlending(true);
+    ASSERT_TRUE(a->getVoxels()->setTextureBudget(3 << 20));
+    const auto b = roundTrip(*a);
+    ASSERT_TRUE(b && b->getVoxels()) << errors();
+    EXPECT_EQ(b->getTimeStep(), 1.0 / 3.0);
+    EXPECT_EQ(b->getTimeRate(), -12.5);
+    EXPECT_TRUE(b->getTimeBlending());
+    EXPECT_EQ(b->getVoxels()->getStepCount(), 3);
+    EXPECT_EQ(b->getVoxels()->getTextureBudget(), 3 << 20);
+    EXPECT_TRUE(errors().empty()) << errors();
+}
+
 // Version 2 had none of these: what is not in the file keeps its default, and nothing is missed.
 TEST_P(SerializerTest, OlderVersionsKeepDefaults)
 {
@@ -228,7 +250,7 @@ TEST_P(SerializerTest, OlderVersionsKeepDefaults)
     a->setShading(true);
     std::string content = write(*a);
     const std::size_t version =
-        content.find("1 4", content.find("Version", content.find("Sampling")));
+        content.find("1 5", content.find("Version", content.find("Sampling")));
     ASSERT_NE(version, std::string::npos);
     content[version + 2] = '2';
     const auto read = SerializerTest::read(content);

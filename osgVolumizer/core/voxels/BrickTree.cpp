@@ -110,7 +110,7 @@ glm::ivec3 BrickTree::coordinatesOf(int level, std::int64_t index) const
 double BrickTree::cut(int level, int brick, int axis) const
 {
     if (_size[axis] == 1) return brick == 0 ? -0.5 : 0.5;
-    return std::min(std::ldexp(double(_step) * brick, level), _size[axis] - 1.0);
+    return std::min(double((std::int64_t(_step) * brick) << level), _size[axis] - 1.0);
 }
 
 TreeBrick BrickTree::brick(std::int64_t index) const
@@ -118,7 +118,7 @@ TreeBrick BrickTree::brick(std::int64_t index) const
     TreeBrick brick;
     brick.level = levelOf(index);
     brick.coordinates = coordinatesOf(brick.level, index);
-    brick.spacing = std::ldexp(1.0, brick.level);
+    brick.spacing = double(std::int64_t(1) << brick.level);
     brick.offset = 0.5 * (brick.spacing - 1.0);
     const Level& level = _levels[static_cast<std::size_t>(brick.level)];
     const int margin = (_overlap - 1) / 2;
@@ -174,10 +174,21 @@ std::vector<std::int64_t> BrickTree::children(std::int64_t number, const glm::dv
     if (level == 0) return bricks;
     const glm::ivec3 first = 2 * coordinatesOf(level, number);
     const glm::ivec3 all = count(level - 1);
-    addFarToNear(
-        level - 1, first,
-        {std::min(first.x + 2, all.x), std::min(first.y + 2, all.y), std::min(first.z + 2, all.z)},
-        eyeVoxel, bricks);
+    // What BrickOrder says of a lattice of two by two by two: per axis, the one behind the split.
+    int order[3][2], counts[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        counts[axis] = first[axis] + 1 < all[axis] ? 2 : 1;
+        const double eye = eyeVoxel.w == 0.0 ? eyeVoxel[axis] : eyeVoxel[axis] / eyeVoxel.w;
+        const double split = eyeVoxel.w == 0.0 ? 0.0 : cut(level - 1, first[axis] + 1, axis);
+        const bool beyond = eyeVoxel.w == 0.0 ? eye > split : eye >= split;
+        order[axis][0] = first[axis] + (counts[axis] == 2 && !beyond);
+        order[axis][1] = first[axis] + int(beyond);
+    }
+    bricks.reserve(8);
+    for (int z = 0; z < counts[2]; ++z)
+        for (int y = 0; y < counts[1]; ++y)
+            for (int x = 0; x < counts[0]; ++x)
+                bricks.push_back(index(level - 1, {order[0][x], order[1][y], order[2][z]}));
     return bricks;
 }
 

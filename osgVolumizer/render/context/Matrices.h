@@ -5,6 +5,9 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat4x4.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -16,6 +19,18 @@ inline glm::dmat4 toGlm(const osg::Matrixd& m)
 inline osg::Matrixd toOsg(const glm::dmat4& m)
 {
     return osg::Matrixd(glm::value_ptr(m));
+}
+
+/// Whether two views differ by more than rounding: manipulators compute the same one anew in every
+/// frame.
+inline bool differs(const osg::Matrixd& a, const osg::Matrixd& b)
+{
+    double largest = 0.0, difference = 0.0;
+    for (int i = 0; i < 16; ++i) {
+        largest = std::max(largest, std::abs(a.ptr()[i]));
+        difference = std::max(difference, std::abs(a.ptr()[i] - b.ptr()[i]));
+    }
+    return !(difference <= 1e-12 * largest);
 }
 
 } // namespace render

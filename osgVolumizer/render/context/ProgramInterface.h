@@ -13,6 +13,7 @@ enum TextureUnit : unsigned
     UNIT_SORTED_FAR,  ///< ranked: the four farthest depths; captured: all sorted depths
     UNIT_SORTED_NEAR, ///< ranked: the four nearest depths; captured: colours
     UNIT_CELLS,
+    UNIT_NEXT_VOXELS,                       ///< of the second of two time steps
     UNIT_FIRST_CAPTURED,                    ///< and the following: captured depths
     UNIT_FIRST_PAINT = UNIT_FIRST_CAPTURED, ///< and the following, in other programs
     UNIT_COUNT = UNIT_FIRST_CAPTURED + 8

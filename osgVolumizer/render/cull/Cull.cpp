@@ -128,6 +128,7 @@ std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
     volume->frameToEye = new osg::RefMatrix(
         toOsg(toGlm(*visitor.getModelViewMatrix()) * volume->prepared->frameToObject));
     TableTexture table;
+    if (voxels) volume->steps = timeStepsOf(appearance, visitor.getFrameStamp());
     if (voxels) table = chooseSampling(*volume, visitor);
     volume->look = makeLook(*volume, table, visitor);
     return volume;

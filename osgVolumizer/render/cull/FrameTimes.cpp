@@ -1,25 +1,12 @@
 #include "FrameTimes.h"
 
+#include "../context/Matrices.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace osgVolumizer {
 namespace render {
-
-namespace {
-
-// Manipulators compute the same view anew in every frame, and round it differently.
-bool differs(const osg::Matrixd& a, const osg::Matrixd& b)
-{
-    double largest = 0.0, difference = 0.0;
-    for (int i = 0; i < 16; ++i) {
-        largest = std::max(largest, std::abs(a.ptr()[i]));
-        difference = std::max(difference, std::abs(a.ptr()[i] - b.ptr()[i]));
-    }
-    return !(difference <= 1e-12 * largest);
-}
-
-} // namespace
 
 void FrameTimes::adapt(View& v, double seconds, double target)
 {

@@ -13,7 +13,9 @@
 #include <osgUtil/CullVisitor>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <queue>
@@ -32,36 +34,78 @@ constexpr double FINE_ENOUGH = 1.0;
 class PageSelection
 {
 public:
-    PageSelection(VolumeInstance& volume, const Voxels& voxels, bool skipping,
-                  osgUtil::CullVisitor& visitor)
-        : _volume(volume), _voxels(voxels), _tree(voxels.getTree()), _skipping(skipping),
-          _visitor(visitor), _query(occupancyQuery(volume, voxels)),
-          _pages(BrickResidency::of(voxels)->pages(voxels)), _toEye(toGlm(*volume.frameToEye)),
-          _frame(frameOf(visitor)),
+    PageSelection(VolumeInstance& volume, const Voxels& voxels, const TimeSteps& steps,
+                  bool skipping, const std::shared_ptr<Pages>& pages, osgUtil::CullVisitor& visitor)
+        : _volume(volume), _voxels(voxels), _tree(voxels.getTree()), _steps(steps),
+          _skipping(skipping), _visitor(visitor), _query(occupancyQuery(volume, voxels)),
+          _pages(pages), _toEye(toGlm(*volume.frameToEye)), _frame(frameOf(visitor)),
           _contextId(visitor.getState() ? visitor.getState()->getContextID() : 0)
     {
         const core::View view{_toEye, toGlm(*visitor.getProjectionMatrix())};
         const Result<glm::dvec4> eye = core::eyePosition(view);
         _eye = eye.ok() ? *eye : glm::dvec4(0.0, 0.0, 1.0, 0.0);
+        if (volume.look->features.slab && volume.prepared->voxelFrame) {
+            _toClip = *volume.frameToEye * *visitor.getProjectionMatrix();
+            _known = pages->lastTest(volume.viewId, _frame);
+            _hasOpaque = pages->hadOpaque(volume.viewId);
+        }
         const glm::dmat2x3 edges = pixelEdges(_toEye, 1.0, visitor);
         _voxelsPerPixel = std::min(glm::length(edges[0]), glm::length(edges[1]));
     }
 
-    void run()
+    /// Chooses pages, looks what there is of them, and what of it can be uploaded in this frame.
+    /// Those that are only read ahead may be let go of for all others.
+    enum Purpose
+    {
+        TO_DRAW,
+        INSTEAD, ///< of steps that are not there yet: nothing more is uploaded
+        AHEAD
+    };
+    void choose(Purpose purpose)
     {
         for (const std::int64_t root : _tree.roots(_eye))
             add(root, -1);
         _rootCount = _nodes.size();
         if (_volume.prepared->voxelFrame) refine();
         for (Node& node : _nodes)
-            look(node);
-        chooseUploads();
+            look(node, purpose);
+        if (purpose == TO_DRAW) chooseUploads();
+        passUp();
+        bool anyHidden = false;
+        for (const Node& node : _nodes) {
+            anyHidden = anyHidden || node.hidden;
+            if (!node.split && !node.hidden) _missing += !node.available || node.withheld;
+            _failed += node.state == Pages::FAILED;
+        }
+        // What was hidden from elsewhere need not be from here.
+        if (anyHidden && (!_known->isExact() || differs(_known->toClip(), _toClip))) ++_missing;
+    }
+    /// Whether the picture is the final one.
+    bool isComplete() const { return _missing == 0; }
+    bool hasFailed() const { return _failed > 0; }
+    bool showsNothing() const { return _nodes.empty(); }
+    std::int64_t missing() const { return _missing; }
+
+    void draw()
+    {
+        _volume.steps = _steps;
+        _volume.emptyBricks += _empty;
+        if (_volume.look->features.slab && _volume.prepared->voxelFrame) {
+            _test = std::make_shared<VisibilityTest>(_frame, _toClip, _volume.rayDistance == 1.0);
+            _pages->addTest(_volume.viewId, _test);
+        }
         for (std::size_t i = 0; i < _rootCount; ++i)
             draw(i, nullptr);
         _volume.sorted = true;
-        ask();
-        report();
     }
+    /// What is to be uploaded in this frame although another selection is drawn.
+    std::vector<DrawnBrick> uploads() const;
+    /// Appends what is missing of the pages. \param lowered by which its priority is below that of
+    /// all that is to be drawn; 0 for that
+    void appendRequests(int lowered, std::vector<PageRequest>& requests) const;
+    /// Of all pages, once they are read.
+    std::int64_t memoryBytes() const;
+    void report(std::int64_t missing, std::int64_t waiting) const;
 
 private:
     /// A page that may be drawn. The nodes of a parent's children follow each other.
@@ -69,22 +113,32 @@ private:
     {
         std::int64_t index = 0;
         core::TreeBrick brick;
-        core::Box3d box;               ///< voxel frame; of its clip box, what is in the region
-        std::optional<double> uniform; ///< the one value of all that it stands for
-        double error = 0.0;            ///< pixels between its samples, where it is nearest
+        core::Box3d box; ///< voxel frame; of its clip box, what is in the region
+        /// Of each time step, the one value of all that it stands for, where all have one.
+        std::array<std::optional<double>, 2> values;
+        bool uniform = false;
+        double error = 0.0; ///< pixels between its samples, where it is nearest
+        float priority() const { return static_cast<float>(std::min(error, 1e30)); }
         std::int64_t parent = -1;
         std::size_t firstChild = 0, childCount = 0;
         bool split = false; ///< its children are to be drawn instead
-        Pages::Page page;
-        bool available = false; ///< it can be drawn in this frame
-        bool below = false;     ///< it can, or something below it
-        bool shows = false;     ///< it, or something below it, is to be drawn
+        VisibilityTest::Answer answer = VisibilityTest::UNKNOWN;
+        bool hidden = false;   ///< by opaque geometry: neither split nor read
+        bool withheld = false; ///< likewise, until it is known whether what it lies in is hidden
+        bool isWithinVisible = false; ///< something that it lies in is visible, as far as is known
+        std::array<Pages::Page, 2> pages;   ///< of each time step
+        Pages::State state = Pages::ABSENT; ///< of what there is least of
+        bool available = false;             ///< it can be drawn in this frame
+        bool below = false;                 ///< it can, or something below it
+        bool missing = false;               ///< it, or something below it, has not been read
+        bool shows = false;                 ///< it, or something below it, is to be drawn
     };
 
-    PageKeeper::Key keyOf(const Node& node) const
+    PageKeeper::Key keyOf(const Node& node, int step) const
     {
-        return {node.index, _volume.look->features.gradientTexture};
+        return {node.index, _volume.look->features.gradientTexture, _steps.step(step)};
     }
+    // Of a time step.
     std::int64_t textureBytes(const Node& node) const
     {
         return core::sampleCount(node.uniform ? glm::ivec3(1) : node.brick.samples.size()) *
@@ -103,29 +157,35 @@ private:
 
     void add(std::int64_t index, std::int64_t parent);
     void refine();
-    void look(Node& node);
+    bool isEmpty(Node& node) const;
+    void look(Node& node, Purpose purpose);
     void chooseUploads();
-    bool isMissingBelow(const Node& node) const;
+    void passUp();
     void draw(std::size_t number, const Node* coarser);
-    void append(const Node& node, const core::Box3d& clipBox);
+    void findHidden(Node& node) const;
+    void append(const Node& node, const Node& place);
+    DrawnBrick drawnBrick(const Node& node, int step) const;
     bool cutToOccupied(const Node& node, SelectedBrick& brick);
-    void ask();
-    void report() const;
 
     VolumeInstance& _volume;
     const Voxels& _voxels;
     const core::BrickTree& _tree;
+    const TimeSteps _steps;
     const bool _skipping;
     osgUtil::CullVisitor& _visitor;
     const OccupancyQuery _query;
     const std::shared_ptr<Pages> _pages;
     const glm::dmat4 _toEye;
     const unsigned _frame, _contextId;
+    osg::Matrixd _toClip;                         ///< of slabs in the voxel frame, as what follows
+    std::shared_ptr<const VisibilityTest> _known; ///< of an earlier frame; or null
+    std::shared_ptr<VisibilityTest> _test;        ///< of this one
+    bool _hasOpaque = false;                      ///< as far as earlier frames know
     glm::dvec4 _eye;
     double _voxelsPerPixel = 0.0; ///< where clip w is 1
     std::vector<Node> _nodes;     ///< parents before children
     std::size_t _rootCount = 0;
-    std::int64_t _missing = 0, _waiting = 0, _failed = 0;
+    std::int64_t _missing = 0, _failed = 0, _empty = 0;
     bool _limited = false; ///< by the budget
 };
 
@@ -146,30 +206,61 @@ void PageSelection::add(std::int64_t index, std::int64_t parent)
         node.error = node.brick.spacing / (_voxelsPerPixel * w);
         if (!(node.error >= 0.0)) node.error = std::numeric_limits<double>::max();
     }
-    if (_voxels.getComponents() == 1) {
-        const auto range = _voxels.getPageRange(index);
-        if (range && !_volume.look->features.gathers() &&
-            (!(range->first <= range->second) ||
-             !showsValues(_voxels, _query, range->first, range->second))) {
-            ++_volume.emptyBricks;
-            return;
-        }
-        if (range && range->first == range->second) node.uniform = range->first;
+    if (_voxels.getComponents() == 1 && isEmpty(node)) {
+        ++_empty;
+        return;
     }
+    if (_known) findHidden(node);
     _nodes.push_back(std::move(node));
+}
+
+// Of what lies in a page that is visible only the next finer level is asked for: it is drawn with
+// what there is of it, and so it is found out which parts of it are hidden.
+void PageSelection::findHidden(Node& node) const
+{
+    node.answer = _known->answer(node.index);
+    node.hidden = node.answer == VisibilityTest::HIDDEN;
+    if (node.parent < 0) return;
+    const Node& parent = _nodes[static_cast<std::size_t>(node.parent)];
+    node.withheld = node.answer == VisibilityTest::UNKNOWN && parent.isWithinVisible;
+    node.isWithinVisible = node.answer == VisibilityTest::UNKNOWN &&
+                           (parent.isWithinVisible || parent.answer == VisibilityTest::VISIBLE);
+}
+
+// Whether a page shows nothing by its range; also finds whether it is uniform. A blend of two steps
+// has all values between theirs.
+bool PageSelection::isEmpty(Node& node) const
+{
+    core::ValueRange all;
+    node.uniform = true;
+    for (int i = 0; i < _steps.count(); ++i) {
+        const auto range = _voxels.getPageRange(node.index, _steps.step(i));
+        if (!range) {
+            node.uniform = false;
+            return false;
+        }
+        all.expand({range->first, range->second});
+        node.uniform = node.uniform && range->first == range->second;
+        node.values[std::size_t(i)] = range->first;
+    }
+    return !_volume.look->features.gathers() &&
+           (all.empty() || !showsValues(_voxels, _query, all.low, all.high));
 }
 
 // Splits the page whose samples are furthest apart on the screen, as long as there is room.
 void PageSelection::refine()
 {
-    const double room = SHARE_OF_A_FRAME * double(getPagingBudget().textureBytes) /
-                        double(Pages::viewCount(_frame, *_pages, _volume.viewId));
+    const double all = double(getPagingBudget().textureBytes) /
+                       double(Pages::viewCount(_frame, *_pages, _volume.viewId));
+    const auto own = double(_voxels.getTextureBudget());
+    const double room = SHARE_OF_A_FRAME * (own > 0.0 ? std::min(own, all) : all);
     std::int64_t bytes = 0;
     std::priority_queue<std::pair<double, std::size_t>> worst;
     const auto consider = [&](std::size_t i) {
         const Node& node = _nodes[i];
-        bytes += textureBytes(node);
-        if (node.brick.level > 0 && node.error > FINE_ENOUGH && !node.uniform)
+        if (!node.hidden) bytes += _steps.count() * textureBytes(node);
+        if (node.brick.level > 0 && node.error > FINE_ENOUGH && !node.uniform && !node.hidden &&
+            !node.withheld)
             worst.emplace(node.error, i);
     };
     for (std::size_t i = 0; i < _nodes.size(); ++i)
@@ -182,7 +273,7 @@ void PageSelection::refine()
             add(child, static_cast<std::int64_t>(parent));
         std::int64_t needed = 0;
         for (std::size_t i = first; i < _nodes.size(); ++i)
-            needed += textureBytes(_nodes[i]);
+            if (!_nodes[i].hidden) needed += _steps.count() * textureBytes(_nodes[i]);
         if (double(bytes + needed) > room) {
             _nodes.resize(first);
             _limited = true;
@@ -196,20 +287,21 @@ void PageSelection::refine()
     }
 }
 
-void PageSelection::look(Node& node)
+void PageSelection::look(Node& node, Purpose purpose)
 {
-    const auto priority = static_cast<float>(std::min(node.error, 1e30));
-    if (node.uniform) _pages->provide(keyOf(node), _voxels, *node.uniform);
-    node.page = _pages->look({keyOf(node), _contextId, _frame, priority});
-    node.available = node.page.state == Pages::RESIDENT;
-}
-
-bool PageSelection::isMissingBelow(const Node& node) const
-{
-    if (!node.split) return node.page.state == Pages::ABSENT || node.page.state == Pages::FAILED;
-    for (std::size_t i = 0; i < node.childCount; ++i)
-        if (isMissingBelow(_nodes[node.firstChild + i])) return true;
-    return false;
+    const auto rank = [](Pages::State state) {
+        constexpr int ranks[] = {0, 2, 3, 1}; // ABSENT, READ, RESIDENT, FAILED
+        return ranks[state];
+    };
+    node.state = Pages::RESIDENT;
+    for (int i = 0; i < _steps.count(); ++i) {
+        if (node.uniform) _pages->provide(keyOf(node, i), _voxels, *node.values[std::size_t(i)]);
+        Pages::Page& page = node.pages[std::size_t(i)];
+        const float priority = purpose == AHEAD ? -1.0f : node.hidden ? 0.0f : node.priority();
+        page = _pages->look({keyOf(node, i), _contextId, _frame, priority});
+        if (rank(page.state) < rank(node.state)) node.state = page.state;
+    }
+    node.available = node.state == Pages::RESIDENT;
 }
 
 // What has been read goes to the context as far as this frame's time allows: the coarsest first,
@@ -218,19 +310,37 @@ bool PageSelection::isMissingBelow(const Node& node) const
 void PageSelection::chooseUploads()
 {
     std::vector<Node*> read;
-    for (Node& node : _nodes)
-        if (node.page.state == Pages::READ && (!node.split || isMissingBelow(node)))
-            read.push_back(&node);
-    std::stable_sort(read.begin(), read.end(), [](const Node* a, const Node* b) {
-        return a->page.offers != b->page.offers ? a->page.offers < b->page.offers
-                                                : a->error > b->error;
+    for (auto node = _nodes.rbegin(); node != _nodes.rend(); ++node) { // children before parents
+        if (!node->split)
+            node->missing = node->state == Pages::ABSENT || node->state == Pages::FAILED;
+        if (node->parent >= 0)
+            _nodes[static_cast<std::size_t>(node->parent)].missing |= node->missing;
+        if (node->state == Pages::READ && !node->hidden && (!node->split || node->missing))
+            read.push_back(&*node);
+    }
+    std::reverse(read.begin(), read.end());
+    const auto offers = [](const Node& node) {
+        return std::max(node.pages[0].offers, node.pages[1].offers);
+    };
+    std::stable_sort(read.begin(), read.end(), [&offers](const Node* a, const Node* b) {
+        const int offersA = offers(*a), offersB = offers(*b);
+        return offersA != offersB ? offersA < offersB : a->error > b->error;
     });
     UploadAllowance& allowance = UploadAllowance::of(_contextId);
     for (Node* node : read) {
-        if (!allowance.take(_frame, textureBytes(*node))) break;
+        std::int64_t bytes = 0;
+        for (int i = 0; i < _steps.count(); ++i)
+            if (node->pages[std::size_t(i)].state == Pages::READ) bytes += textureBytes(*node);
+        if (!allowance.take(_frame, bytes)) break;
         node->available = true;
-        _pages->offer(keyOf(*node));
+        for (int i = 0; i < _steps.count(); ++i)
+            _pages->offer(keyOf(*node, i));
     }
+}
+
+// Of children to their parents.
+void PageSelection::passUp()
+{
     for (auto node = _nodes.rbegin(); node != _nodes.rend(); ++node) { // children before parents
         node->below = node->below || node->available;
         node->shows = node->shows || !node->split;
@@ -250,23 +360,20 @@ void PageSelection::draw(std::size_t number, const Node* coarser)
     bool childrenCan = false;
     for (std::size_t i = 0; i < node.childCount; ++i)
         childrenCan = childrenCan || _nodes[node.firstChild + i].below;
-    if (!node.split) {
-        _missing += !node.available;
-    } else if (childrenCan) {
+    if (node.split && childrenCan) {
         for (std::size_t i = 0; i < node.childCount; ++i)
             draw(node.firstChild + i, own);
         return;
-    } else {
-        ++_missing;
     }
-    if (own) append(*own, node.brick.clipBox);
+    if (own) append(*own, node);
 }
 
-void PageSelection::append(const Node& node, const core::Box3d& clipBox)
+// All or a part of what a page has: where another one is.
+void PageSelection::append(const Node& node, const Node& place)
 {
     SelectedBrick brick;
     brick.index = node.index;
-    brick.box = brick.clipBox = clipBox;
+    brick.box = brick.clipBox = place.brick.clipBox;
     if (_volume.prepared->voxelFrame)
         brick.box = intersection(brick.box, _volume.prepared->regionBox);
     if (brick.box.empty()) return;
@@ -278,35 +385,63 @@ void PageSelection::append(const Node& node, const core::Box3d& clipBox)
         brick.cells = std::move(cells);
         ++_volume.homogeneousBricks;
     } else {
-        const core::TreeBrick& place = node.brick;
-        const glm::dvec3 size(place.samples.size());
-        brick.textureScale = glm::vec3(1.0 / (place.spacing * size));
+        const core::TreeBrick& from = node.brick;
+        const glm::dvec3 size(from.samples.size());
+        brick.textureScale = glm::vec3(1.0 / (from.spacing * size));
         brick.textureOffset =
-            glm::vec3((0.5 - glm::dvec3(place.samples.min) - place.offset / place.spacing) / size);
+            glm::vec3((0.5 - glm::dvec3(from.samples.min) - from.offset / from.spacing) / size);
     }
     // Samples that lie further apart are asked for at as many times the period.
     const glm::dvec3& period = _volume.sampling.periodVoxel;
     const double steps = node.brick.spacing * (period.x + period.y + period.z) /
                          (3.0 * _volume.look->voxelsPerSample);
     brick.stride = static_cast<float>(std::max(std::floor(steps + 1e-6), 1.0));
-    if (!cutToOccupied(node, brick)) return;
-    brick.texels.texture = node.page.texture;
-    brick.texels.voxels = &_voxels;
-    brick.texels.index = node.index;
-    brick.texels.gradients = _volume.look->features.gradientTexture;
-    brick.texels.paged = true;
-    brick.texels.texels = node.page.texels;
+    // A coarse page may show nothing where a finer one does; that would not mean that it is hidden.
+    const bool final = &node == &place && (node.brick.level == 0 || node.error <= FINE_ENOUGH);
+    const bool uncut = _hasOpaque && !final && !node.uniform;
+    if (!uncut && !cutToOccupied(node, brick)) return;
+    brick.texels = drawnBrick(node, 0);
+    brick.texels.test = _test;
+    if (uncut || final || node.uniform) brick.texels.testedAs = place.index;
+    if (_steps.blended) {
+        brick.nextTexels = drawnBrick(node, 1);
+        brick.stepFraction = _steps.fraction;
+    }
     _volume.bricks.push_back(std::move(brick));
+}
+
+DrawnBrick PageSelection::drawnBrick(const Node& node, int step) const
+{
+    DrawnBrick brick;
+    brick.texture = node.pages[std::size_t(step)].texture;
+    brick.voxels = &_voxels;
+    brick.index = node.index;
+    brick.gradients = _volume.look->features.gradientTexture;
+    brick.paged = true;
+    brick.texels = node.pages[std::size_t(step)].texels;
+    return brick;
+}
+
+std::vector<DrawnBrick> PageSelection::uploads() const
+{
+    std::vector<DrawnBrick> uploads;
+    for (const Node& node : _nodes)
+        for (int i = 0; node.available && i < _steps.count(); ++i)
+            if (node.pages[std::size_t(i)].state == Pages::READ)
+                uploads.push_back(drawnBrick(node, i));
+    return uploads;
 }
 
 // Cuts a brick down to where it shows something; false where that is nowhere.
 bool PageSelection::cutToOccupied(const Node& node, SelectedBrick& brick)
 {
     const ProgramFeatures& features = _volume.look->features;
-    if (node.uniform || !node.page.cells || !_skipping || !_volume.prepared->voxelFrame ||
-        features.cubic || features.gathers())
+    // What a blend of two steps shows is more than what either does.
+    const bool known = !_steps.blended && node.pages[0].cells;
+    if (node.uniform || !known || !_skipping || !_volume.prepared->voxelFrame || features.cubic ||
+        features.gathers())
         return true;
-    brick.cells = node.page.cells->get(_voxels, _query);
+    brick.cells = node.pages[0].cells->get(_voxels, _query);
     _volume.cellSize = std::min<double>(_volume.cellSize, brick.cells->cellSize);
     _volume.cellCount += brick.cells->cellCount;
     _volume.occupiedCells += brick.cells->occupiedCount;
@@ -321,26 +456,36 @@ bool PageSelection::cutToOccupied(const Node& node, SelectedBrick& brick)
 }
 
 // The coarser is the more urgent, since its samples are further apart on the screen.
-void PageSelection::ask()
+void PageSelection::appendRequests(int lowered, std::vector<PageRequest>& requests) const
 {
-    std::vector<PageRequest> requests;
-    for (const Node& node : _nodes) {
-        _failed += node.page.state == Pages::FAILED;
-        if (node.page.state != Pages::ABSENT && node.page.state != Pages::FAILED) continue;
-        requests.push_back(
-            {keyOf(node), static_cast<float>(std::min(node.error, 1e30)), memoryBytes(node)});
-    }
-    _waiting = _pages->ask(_volume.viewId, std::move(requests));
+    for (const Node& node : _nodes)
+        for (int i = 0; i < _steps.count(); ++i) {
+            const Pages::State state = node.pages[std::size_t(i)].state;
+            if (state != Pages::ABSENT && state != Pages::FAILED) continue;
+            if (node.hidden || node.withheld) continue;
+            const float priority = lowered == 0 ? node.priority() : static_cast<float>(-lowered);
+            requests.push_back({keyOf(node, i), priority, memoryBytes(node)});
+        }
 }
 
-void PageSelection::report() const
+std::int64_t PageSelection::memoryBytes() const
+{
+    std::int64_t bytes = 0;
+    for (const Node& node : _nodes)
+        bytes += _steps.count() * memoryBytes(node);
+    return bytes;
+}
+
+void PageSelection::report(std::int64_t missing, std::int64_t waiting) const
 {
     if (!collectingStats(_visitor.getCurrentCamera())) return;
     const std::pair<const char*, std::int64_t> values[] = {
         {"osgVolumizer pages wanted", static_cast<std::int64_t>(_nodes.size())},
-        {"osgVolumizer pages missing", _missing},
-        {"osgVolumizer pages waited for", _waiting},
+        {"osgVolumizer pages missing", missing},
+        {"osgVolumizer pages waited for", waiting},
         {"osgVolumizer pages failed", _failed},
+        {"osgVolumizer pages hidden",
+         std::count_if(_nodes.begin(), _nodes.end(), [](const Node& n) { return n.hidden; })},
         {"osgVolumizer pages limited by the budget", _limited ? 1 : 0},
         {"osgVolumizer bytes of pages", PageQueue::instance().heldBytes()},
         {"osgVolumizer bytes of page textures", Pages::textureBytes(_contextId)}};
@@ -349,13 +494,84 @@ void PageSelection::report() const
               static_cast<double>(value.second));
 }
 
+// What follows where time goes on, as far ahead as there is room for in half of the budget.
+void appendSteps(const VolumeInstance& volume, const TimeSteps& steps, std::int64_t bytesOfStep,
+                 const std::function<PageSelection(const TimeSteps&)>& selection,
+                 std::vector<PageRequest>& requests)
+{
+    constexpr int MOST = 3;
+    const std::int64_t room = getPagingBudget().memoryBytes / 2;
+    for (int ahead = 1; ahead <= MOST && (ahead + 1) * bytesOfStep <= room; ++ahead) {
+        const TimeSteps next = stepsAhead(*volume.appearance, steps, ahead);
+        if (next.sameSteps(steps)) return; // all are there
+        PageSelection pages = selection(next);
+        pages.choose(PageSelection::AHEAD);
+        pages.appendRequests(ahead, requests);
+    }
+}
+
+// Tells a view how far its picture is, and a viewer that draws on demand to go on until it is
+// final. A request to draw once would be forgotten: it comes while a frame is drawn.
+void tell(const Voxels& voxels, std::int64_t missing, bool plays, std::uint64_t viewId,
+          Pages::Steps& known, Pages& pages, osgUtil::CullVisitor& visitor)
+{
+    const osg::Camera* camera = visitor.getCurrentCamera();
+    const bool changed = known.missing < 0 || (known.missing == 0) != (missing == 0);
+    osg::View* view = camera ? const_cast<osg::Camera*>(camera)->getView() : nullptr;
+    const bool goesOn = missing > 0 || plays, wentOn = known.goesOn.valid();
+    known.missing = missing;
+    known.goesOn = goesOn ? view : nullptr;
+    pages.setSteps(viewId, known);
+    if (changed)
+        if (const PagingCallback callback = getPagingCallback())
+            callback({&voxels, camera, missing});
+    if (view && (goesOn || wentOn)) Pages::setContinuous(*view);
+}
+
 } // namespace
 
 void selectPages(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& hooks,
                  osgUtil::CullVisitor& visitor)
 {
     if (!visitor.getProjectionMatrix()) return;
-    PageSelection(volume, voxels, hooks.skipping, visitor).run();
+    const std::shared_ptr<Pages> pages = BrickResidency::of(voxels)->pages(voxels);
+    const auto selection = [&](const TimeSteps& steps) {
+        return PageSelection(volume, voxels, steps, hooks.skipping, pages, visitor);
+    };
+    // Steps that were begun with are waited for, or where time goes on faster than they can be read
+    // none would ever be there.
+    Pages::Steps known = pages->stepsOf(volume.viewId);
+    const TimeSteps now = volume.steps;
+    const bool waits =
+        known.pending && known.pending->blended == now.blended && !known.pending->sameSteps(now);
+    const TimeSteps aim = waits ? *known.pending : now;
+    PageSelection wanted = selection(aim);
+    wanted.choose(PageSelection::TO_DRAW);
+    std::optional<PageSelection> instead;
+    const bool hasOthers = known.shown && !known.shown->sameSteps(aim);
+    if (!wanted.isComplete() && hasOthers && known.shown->blended == aim.blended) {
+        instead.emplace(selection(*known.shown));
+        instead->choose(PageSelection::INSTEAD);
+        if (!instead->isComplete()) instead.reset();
+    }
+    (instead ? *instead : wanted).draw();
+    // Where nothing is drawn, nothing can be uploaded with it.
+    if (instead && volume.bricks.empty()) {
+        instead.reset();
+        wanted.draw();
+    }
+    if (instead) volume.bricks.front().texels.uploads = wanted.uploads();
+    if (wanted.isComplete()) known.shown = aim;
+    known.pending.reset();
+    if (!wanted.isComplete() && !wanted.hasFailed()) known.pending = aim;
+    const std::int64_t missing = wanted.missing() + (aim.sameSteps(now) ? 0 : 1);
+    const bool plays = voxels.getStepCount() > 1 && volume.appearance->getTimeRate() != 0.0;
+    tell(voxels, missing, plays, volume.viewId, known, *pages, visitor);
+    std::vector<PageRequest> requests;
+    wanted.appendRequests(0, requests);
+    if (plays) appendSteps(volume, aim, wanted.memoryBytes(), selection, requests);
+    const std::int64_t waiting = pages->ask(volume.viewId, std::move(requests));
+    wanted.report(missing, waiting);
 }
 
 } // namespace render

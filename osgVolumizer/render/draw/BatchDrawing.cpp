@@ -5,6 +5,7 @@
 #include "../context/Uniforms.h"
 #include "../textures/BrickCells.h"
 #include "../textures/JoinedBricks.h"
+#include "VisibilityQueries.h"
 
 #include "../../core/ordering/BrickOrder.h"
 #include "../../core/sampling/ViewHelpers.h"
@@ -20,6 +21,15 @@ namespace render {
 
 namespace {
 
+// False where there is nothing to draw from. Bricks of both steps have the same samples, and so are
+// coarser in the same way where they have to be.
+bool setNextStep(const BatchDrawing& drawing, const BrickBatch& batch)
+{
+    drawing.uniforms.set("stepFraction", batch.stepFraction);
+    return batch.nextBrick.texture &&
+           batch.nextBrick.apply(drawing.renderInfo, drawing.limits, drawing.nextVoxelUnit).texture;
+}
+
 // False where there is nothing to draw from.
 bool setVoxels(const BatchDrawing& drawing, const BrickBatch& batch)
 {
@@ -30,6 +40,7 @@ bool setVoxels(const BatchDrawing& drawing, const BrickBatch& batch)
     } else if (batch.brick.texture) {
         voxels = batch.brick.apply(drawing.renderInfo, drawing.limits, drawing.voxelUnit);
         if (!voxels.texture) return false;
+        if (drawing.features.blendsSteps && !setNextStep(drawing, batch)) return false;
     } else {
         return true;
     }
@@ -87,6 +98,8 @@ BrickBatch batchOf(const SelectedBrick& brick)
 {
     BrickBatch batch;
     batch.brick = brick.texels;
+    batch.nextBrick = brick.nextTexels;
+    batch.stepFraction = brick.stepFraction;
     batch.clipMin = glm::vec3(brick.box.min);
     batch.clipMax = glm::vec3(brick.box.max);
     batch.brickMin = glm::vec3(brick.clipBox.min);
@@ -121,8 +134,20 @@ void drawBatch(const BatchDrawing& drawing, const BrickBatch& batch)
         if (batch.joined) drawApart(drawing, batch);
         return;
     }
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.indexCount), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(std::size_t(batch.firstIndex) * sizeof(unsigned)));
+    const auto draw = [&batch]() {
+        glDrawElements(
+            GL_TRIANGLES, static_cast<GLsizei>(batch.indexCount), GL_UNSIGNED_INT,
+            reinterpret_cast<const void*>(std::size_t(batch.firstIndex) * sizeof(unsigned)));
+    };
+    const std::shared_ptr<VisibilityTest>& test = batch.brick.test;
+    if (!drawing.tests || !test) return draw();
+    test->setOpaque();
+    if (batch.brick.testedAs < 0) return draw();
+    osg::State& state = *drawing.renderInfo.getState();
+    auto& queries = drawing.tests->part<VisibilityQueries>();
+    queries.begin(state, test, batch.brick.testedAs);
+    draw();
+    queries.end(state);
 }
 
 } // namespace render

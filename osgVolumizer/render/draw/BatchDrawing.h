@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../context/ContextLimits.h"
+#include "../context/ContextResources.h"
 #include "../context/ProgramInterface.h"
 #include "ProgramFeatures.h"
 #include "VolumeMesh.h"
@@ -22,7 +22,10 @@ struct BatchDrawing
     const Uniforms& uniforms;
     const ProgramFeatures& features;
     const core::View& view;
-    unsigned voxelUnit = UNIT_VOXELS, cellUnit = UNIT_CELLS; ///< that textures are applied to
+    ///< That textures are applied to.
+    unsigned voxelUnit = UNIT_VOXELS, cellUnit = UNIT_CELLS, nextVoxelUnit = UNIT_NEXT_VOXELS;
+    /// Which pages are hidden by opaque geometry is found out; null: it is not.
+    ContextResources* tests = nullptr;
 };
 
 /// The batch of a brick, without triangles.

@@ -92,9 +92,11 @@ bool setMarched(const FusedDrawing& drawing, const FusedMember& member, const Un
     BatchDrawing batch = batchDrawing(drawing, member, uniforms, view);
     batch.voxelUnit = units.take();
     batch.cellUnit = features.skipping ? units.take() : 0;
+    batch.nextVoxelUnit = features.blendsSteps ? units.take() : 0;
     const unsigned paints = units.take(2 * static_cast<unsigned>(features.paintCount));
     if (!units.suffice() || !setMember(drawing, member, uniforms, table, paints)) return false;
     uniforms.set("voxels", static_cast<int>(batch.voxelUnit));
+    if (features.blendsSteps) uniforms.set("nextVoxels", static_cast<int>(batch.nextVoxelUnit));
     uniforms.set("lookupTable", static_cast<int>(table));
     if (features.skipping) uniforms.set("cells", static_cast<int>(batch.cellUnit));
     if (!drawing.part.features.inOrder && isHomogeneous(member))

@@ -37,6 +37,7 @@ constexpr Flag FLAGS[] = {
     {&ProgramFlags::skipping, "SKIPPING"},
     {&ProgramFlags::countSamples, "COUNT_SAMPLES"},
     {&ProgramFlags::coarse, "COARSE"},
+    {&ProgramFlags::blendsSteps, "BLENDS_STEPS"},
     {&ProgramFlags::inOrder, "IN_ORDER"},
 };
 // A flag without a row would be missing in the key, and programs would be taken for one another.

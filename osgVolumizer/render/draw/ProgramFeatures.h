@@ -32,6 +32,7 @@ struct ProgramFlags
     bool skipping = false;        ///< leap over cells that show nothing
     bool countSamples = false;    ///< draw the number of samples: see ViewHooks
     bool coarse = false;          ///< fewer rays than pixels: see CoarseImage
+    bool blendsSteps = false;     ///< values are those between two time steps
     bool inOrder = false;         ///< of several that are marched: one after another, not together
 };
 

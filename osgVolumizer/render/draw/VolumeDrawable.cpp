@@ -175,7 +175,9 @@ void VolumeDrawable::drawMarched(osg::RenderInfo& renderInfo,
     if (look.table.texture && !applyTable(state, look.table.texture.get(), UNIT_TABLE)) return;
     if (_part->paints)
         setPaints(renderInfo, resources->limits, uniforms, *_part->paints, UNIT_FIRST_PAINT);
-    const BatchDrawing drawing{renderInfo, resources->limits, uniforms, _part->features, view};
+    BatchDrawing drawing{renderInfo, resources->limits, uniforms, _part->features, view};
+    const AccumulationBuffers& buffers = resources->part<AccumulationBuffers>();
+    if (_part->features.slab && buffers.hasOpaqueDepth) drawing.tests = resources.get();
     if (_part->features.coarse) setOneRayPerPixel(uniforms, currentViewport());
     if (compute.isUsed()) {
         if (compute.draw(drawing))

@@ -12,6 +12,8 @@ namespace render {
 struct BrickBatch
 {
     DrawnBrick brick;                                  ///< none without voxels, and where joined
+    DrawnBrick nextBrick;                              ///< of the second of two time steps; or none
+    float stepFraction = 0.0f;                         ///< of the second
     std::shared_ptr<const JoinedBricks> joined;        ///< several bricks in one texture; else null
     std::shared_ptr<const BrickCells> cells;           ///< null where nothing is known
     glm::vec3 clipMin{0.0f}, clipMax{0.0f};            ///< frame; of what is drawn

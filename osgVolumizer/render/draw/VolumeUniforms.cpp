@@ -122,7 +122,8 @@ void setSamplers(const Uniforms& uniforms)
                                                                  {"slotColors", UNIT_SORTED_NEAR},
                                                                  {"sortedFar", UNIT_SORTED_FAR},
                                                                  {"sortedNear", UNIT_SORTED_NEAR},
-                                                                 {"cells", UNIT_CELLS}};
+                                                                 {"cells", UNIT_CELLS},
+                                                                 {"nextVoxels", UNIT_NEXT_VOXELS}};
     for (const auto& unit : UNITS)
         uniforms.set(unit.first, static_cast<int>(unit.second));
 }

@@ -53,7 +53,8 @@ int unitsOf(const std::vector<const VolumeInstance*>& volumes)
     for (const VolumeInstance* volume : volumes) {
         tables.insert(volume->look->table.texture.get());
         const std::size_t paints = volume->paints ? 2 * volume->paints->size() : 0;
-        units += volume->bricks.size() * ((volume->skipping ? 2u : 1u) + paints);
+        const std::size_t steps = static_cast<std::size_t>(volume->steps.count());
+        units += volume->bricks.size() * ((volume->skipping ? 1u : 0u) + steps + paints);
     }
     return static_cast<int>(units + tables.size());
 }

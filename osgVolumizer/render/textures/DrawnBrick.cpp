@@ -25,6 +25,8 @@ CoarseTexture DrawnBrick::apply(osg::RenderInfo& renderInfo, const ContextLimits
 CoarseTexture DrawnBrick::applyPage(osg::RenderInfo& renderInfo, const ContextLimits& limits,
                                     unsigned unit) const
 {
+    for (const DrawnBrick& brick : uploads)
+        brick.applyPage(renderInfo, limits, unit);
     osg::State& state = *renderInfo.getState();
     std::optional<osg::Timer_t> start;
     const auto load = [&]() {

@@ -1,10 +1,15 @@
 #pragma once
 
 #include "BrickTexture.h"
+#include "VisibilityTest.h"
 
 #include "../../Voxels.h"
 
 #include <osg/RenderInfo>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
 
 namespace osgVolumizer {
 namespace render {
@@ -18,6 +23,10 @@ struct DrawnBrick
     bool gradients = false;
     bool paged = false;                    ///< `index` is a page's
     osg::ref_ptr<const osg::Image> texels; ///< of a page that the context may lack
+    std::vector<DrawnBrick> uploads;       ///< pages for later frames, uploaded on the occasion
+    /// Of a page: what to tell of whether it is visible, and as which page; or null.
+    std::shared_ptr<VisibilityTest> test;
+    std::int64_t testedAs = -1; ///< none: only whether there is anything opaque
 
     /// See BrickTexture::apply().
     CoarseTexture apply(osg::RenderInfo& renderInfo, const ContextLimits& limits,

@@ -5,6 +5,7 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <tuple>
 #include <vector>
 
 namespace osgVolumizer {
@@ -14,15 +15,15 @@ namespace render {
 class PageKeeper
 {
 public:
-    /// A page: its number, and which kind of texels it is to have.
+    /// A page: its number and time step, and which kind of texels it is to have.
     struct Key
     {
         std::int64_t page = 0;
         bool gradients = false;
-        bool operator==(const Key& o) const { return page == o.page && gradients == o.gradients; }
+        int step = 0;
         bool operator<(const Key& o) const
         {
-            return page != o.page ? page < o.page : gradients < o.gradients;
+            return std::tie(page, step, gradients) < std::tie(o.page, o.step, o.gradients);
         }
     };
 

@@ -4,12 +4,14 @@
 #include "Texels.h"
 
 #include <osg/Timer>
-#include <osg/observer_ptr>
+#include <osgGA/GUIActionAdapter>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <limits>
+#include <set>
 
 namespace osgVolumizer {
 namespace render {
@@ -66,14 +68,21 @@ Pages::~Pages()
 {
     PageQueue::instance().forget(*this);
     PageQueue::instance().released(bytesOf(_entries));
+    osg::ref_ptr<osg::View> view;
+    for (const auto& known : _views)
+        if (known.second.steps.goesOn.lock(view)) setContinuous(*view);
 }
 
 // Of the texels in memory.
 std::int64_t Pages::bytesOf(const std::map<Key, Entry>& entries)
 {
+    std::set<const Content*> counted;
     std::int64_t bytes = 0;
-    for (const auto& entry : entries)
-        if (entry.second.texels) bytes += entry.second.bytes;
+    for (const auto& entry : entries) {
+        const ContentPtr& content = entry.second.content;
+        if (content && content->texels && counted.insert(content.get()).second)
+            bytes += content->bytes;
+    }
     return bytes;
 }
 
@@ -83,6 +92,7 @@ void Pages::begin(const Voxels& voxels)
     std::map<Key, Entry> forgotten; // freed without the lock
     {
         std::lock_guard<std::mutex> lock(_mutex);
+        _textureBudget = voxels.getTextureBudget();
         if (_voxels.get() == &voxels && _modified == modified && _layout == layout) return;
         _voxels = &voxels;
         _modified = modified;
@@ -90,6 +100,8 @@ void Pages::begin(const Voxels& voxels)
         ++_generation;
         _reported = false;
         forgotten.swap(_entries);
+        for (auto& view : _views)
+            view.second.steps = {};
     }
     PageQueue::instance().released(bytesOf(forgotten));
 }
@@ -100,23 +112,24 @@ Pages::Page Pages::look(const Look& look)
     _frame = std::max(_frame, look.frame);
     const auto found = _entries.find(look.key);
     if (found == _entries.end()) return {};
-    Entry& entry = found->second;
-    entry.lastFrame = look.frame;
-    entry.priority = look.priority;
-    if (entry.texture) {
-        entry.texture->setUse(look.frame, look.priority);
-        if (entry.texture->isIn(look.contextId))
-            return {RESIDENT, entry.texture, entry.texels, 0, entry.cells};
-        if (entry.texels) return {READ, entry.texture, entry.texels, entry.offers, entry.cells};
+    if (const ContentPtr& content = found->second.content) {
+        Content& c = *content;
+        // Of the time steps that share it the one that is most wanted counts.
+        c.priority =
+            c.lastFrame == look.frame ? std::max(c.priority, look.priority) : look.priority;
+        c.lastFrame = look.frame;
+        c.texture->setUse(look.frame, c.priority);
+        if (c.texture->isIn(look.contextId)) return {RESIDENT, c.texture, c.texels, 0, c.cells};
+        if (c.texels) return {READ, c.texture, c.texels, c.offers, c.cells};
     }
-    return {entry.failures > 0 ? FAILED : ABSENT, nullptr, nullptr, 0, nullptr};
+    return {found->second.failures > 0 ? FAILED : ABSENT, nullptr, nullptr, 0, nullptr};
 }
 
 void Pages::offer(const Key& key)
 {
     std::lock_guard<std::mutex> lock(_mutex);
     const auto found = _entries.find(key);
-    if (found != _entries.end()) ++found->second.offers;
+    if (found != _entries.end() && found->second.content) ++found->second.content->offers;
 }
 
 void Pages::provide(const Key& key, const Voxels& voxels, double value)
@@ -124,28 +137,89 @@ void Pages::provide(const Key& key, const Voxels& voxels, double value)
     {
         std::lock_guard<std::mutex> lock(_mutex);
         const auto found = _entries.find(key);
-        if (found != _entries.end() && found->second.texels) return;
+        const bool known = found != _entries.end() && found->second.content;
+        if (known && !found->second.content->isGone()) return;
     }
-    const osg::ref_ptr<const osg::Image> texel = uniformTexel(voxels, value, key.gradients);
+    auto content = std::make_shared<Content>();
+    content->texels = uniformTexel(voxels, value, key.gradients); // too small to count
+    content->texture = new BrickTexture(texelFormat(voxels, key.gradients), glm::ivec3(1),
+                                        std::numeric_limits<std::int64_t>::max());
+    const ContentPtr twin = findTwin(key, *content->texels);
     std::lock_guard<std::mutex> lock(_mutex);
-    Entry& entry = _entries[key];
-    if (entry.texels) return;
-    entry.texels = texel; // too small to count
-    entry.texture = new BrickTexture(texelFormat(voxels, key.gradients), glm::ivec3(1),
-                                     std::numeric_limits<std::int64_t>::max());
+    keep(key, twin, content);
+}
+
+Pages::Steps Pages::stepsOf(std::uint64_t viewId) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    const auto found = _views.find(viewId);
+    return found == _views.end() ? Steps() : found->second.steps;
+}
+
+void Pages::setSteps(std::uint64_t viewId, const Steps& steps)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    _views[viewId].steps = steps;
+}
+
+namespace {
+
+constexpr unsigned FRAMES_OF_TESTS = 4;
+
+} // namespace
+
+void Pages::addTest(std::uint64_t viewId, const std::shared_ptr<VisibilityTest>& test)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    auto& tests = _views[viewId].tests;
+    tests.push_front(test);
+    if (tests.size() > FRAMES_OF_TESTS) tests.pop_back();
+}
+
+std::shared_ptr<const VisibilityTest> Pages::lastTest(std::uint64_t viewId, unsigned frame) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    const auto view = _views.find(viewId);
+    if (view == _views.end()) return nullptr;
+    for (const auto& test : view->second.tests)
+        if (test->isClosed() && test->frame() + FRAMES_OF_TESTS >= frame) return test;
+    return nullptr;
+}
+
+bool Pages::hadOpaque(std::uint64_t viewId) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    const auto view = _views.find(viewId);
+    if (view == _views.end()) return false;
+    for (const auto& test : view->second.tests)
+        if (test->hadOpaque()) return true;
+    return false;
+}
+
+void Pages::setContinuous(osg::View& view)
+{
+    auto* viewer = dynamic_cast<osgGA::GUIActionAdapter*>(&view);
+    if (!viewer) return;
+    bool any = false;
+    for (const auto& pages : Registry::instance().living()) {
+        std::lock_guard<std::mutex> lock(pages->_mutex);
+        for (const auto& known : pages->_views)
+            any = any || known.second.steps.goesOn == &view;
+    }
+    viewer->requestContinuousUpdate(any);
 }
 
 std::size_t Pages::viewCount(unsigned frame, Pages& pages, std::uint64_t viewId)
 {
     {
         std::lock_guard<std::mutex> lock(pages._mutex);
-        pages._views[viewId] = frame;
+        pages._views[viewId].frame = frame;
     }
     std::size_t count = 0;
     for (const auto& each : Registry::instance().living()) {
         std::lock_guard<std::mutex> lock(each->_mutex);
         for (auto view = each->_views.begin(); view != each->_views.end();) {
-            const bool seen = view->second + 1 >= frame;
+            const bool seen = view->second.frame + 1 >= frame;
             count += seen;
             view = seen ? std::next(view) : each->_views.erase(view);
         }
@@ -164,13 +238,50 @@ std::int64_t Pages::ask(std::uint64_t viewId, std::vector<PageRequest> requests)
             if (found == _entries.end()) return false;
             const Entry& entry = found->second;
             if (entry.reading) ++waiting;
-            return entry.texels || entry.reading || entry.retryTime > time;
+            const bool there = entry.content && entry.content->texels;
+            return there || entry.reading || entry.retryTime > time;
         };
         requests.erase(std::remove_if(requests.begin(), requests.end(), isOfNoUse), requests.end());
     }
     waiting += static_cast<std::int64_t>(requests.size());
     PageQueue::instance().ask(shared_from_this(), viewId, std::move(requests));
     return waiting;
+}
+
+// The content of the time step before or after, where that is the same; else null.
+Pages::ContentPtr Pages::findTwin(const Key& key, const osg::Image& texels) const
+{
+    std::vector<std::pair<ContentPtr, osg::ref_ptr<const osg::Image>>> neighbours;
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        for (const int way : {-1, 1}) {
+            const auto found = _entries.find({key.page, key.gradients, key.step + way});
+            if (found == _entries.end() || !found->second.content) continue;
+            if (const auto& other = found->second.content->texels)
+                neighbours.push_back({found->second.content, other});
+        }
+    }
+    const std::size_t bytes = texels.getTotalSizeInBytes();
+    for (const auto& [content, other] : neighbours)
+        if (other->getTotalSizeInBytes() == bytes &&
+            std::memcmp(other->data(), texels.data(), bytes) == 0)
+            return content;
+    return nullptr;
+}
+
+// Expects the lock. Keeps what a page turned out to be, as its twin where there is one. Returns the
+// bytes that are kept more.
+std::int64_t Pages::keep(const Key& key, const ContentPtr& twin, const ContentPtr& content)
+{
+    ContentPtr& kept = _entries[key].content;
+    // What a context still has stays.
+    if (!kept || kept->isGone()) kept = twin ? twin : content;
+    if (kept != content && kept->texels) return 0;
+    kept->texels = content->texels;
+    kept->bytes = content->bytes;
+    kept->offers = 0;
+    kept->lastFrame = _frame;
+    return content->bytes;
 }
 
 std::int64_t Pages::read(const Key& key)
@@ -181,22 +292,26 @@ std::int64_t Pages::read(const Key& key)
         std::lock_guard<std::mutex> lock(_mutex);
         if (!_voxels.lock(voxels)) return 0;
         Entry& entry = _entries[key];
-        if (entry.texels || entry.reading) return 0;
+        if ((entry.content && entry.content->texels) || entry.reading) return 0;
         entry.reading = true;
         generation = _generation;
     }
-    osg::ref_ptr<const osg::Image> texels;
-    std::shared_ptr<PageCells> cells;
+    auto content = std::make_shared<Content>();
     const core::TreeBrick brick = voxels->getTree().brick(key.page);
-    Result<VoxelBlock> block = voxels->readPage(key.page);
+    Result<VoxelBlock> block = voxels->readPage(key.page, key.step);
     try {
         if (block.ok()) {
-            texels = makeTexels(*voxels, *block, brick.samples.size(), key.gradients);
-            cells = std::make_shared<PageCells>(*voxels, brick, *block);
+            content->texels = makeTexels(*voxels, *block, brick.samples.size(), key.gradients);
+            content->cells = std::make_shared<PageCells>(*voxels, brick, *block);
+            content->bytes = static_cast<std::int64_t>(content->texels->getTotalSizeInBytes());
+            content->texture =
+                new BrickTexture(texelFormat(*voxels, key.gradients), brick.samples.size(),
+                                 std::numeric_limits<std::int64_t>::max());
         }
     } catch (const std::exception&) {
         block = Status(ErrorCode::TOO_LARGE, "there is no memory for a page of voxels");
     }
+    const ContentPtr twin = block.ok() ? findTwin(key, *content->texels) : nullptr;
     std::lock_guard<std::mutex> lock(_mutex);
     if (generation != _generation) return 0; // of other data; the entry is another's
     Entry& entry = _entries[key];
@@ -205,16 +320,9 @@ std::int64_t Pages::read(const Key& key)
         fail(key, block.status);
         return 0;
     }
-    entry.failures = entry.offers = 0;
+    entry.failures = 0;
     entry.retryTime = 0.0;
-    entry.texels = texels;
-    entry.cells = cells;
-    entry.bytes = static_cast<std::int64_t>(texels->getTotalSizeInBytes());
-    entry.lastFrame = _frame;
-    if (!entry.texture)
-        entry.texture = new BrickTexture(texelFormat(*voxels, key.gradients), brick.samples.size(),
-                                         std::numeric_limits<std::int64_t>::max());
-    return entry.bytes;
+    return keep(key, twin, content);
 }
 
 // Expects the lock. One message, however often.
@@ -233,39 +341,53 @@ std::int64_t Pages::release(std::int64_t bytes)
     std::vector<osg::ref_ptr<const osg::Image>> freed; // without the lock
     std::int64_t count = 0;
     std::lock_guard<std::mutex> lock(_mutex);
-    std::vector<std::pair<std::pair<unsigned, float>, Key>> byUse;
+    std::vector<std::pair<std::pair<unsigned, float>, Content*>> byUse;
     for (const auto& item : _entries) {
-        const Entry& entry = item.second;
-        const bool wanted = entry.lastFrame + 1 >= _frame;
-        if (entry.texels && entry.bytes > 0 && (!wanted || entry.texture->isAnywhere()))
-            byUse.push_back({{entry.lastFrame, entry.priority}, item.first});
+        const ContentPtr& content = item.second.content;
+        if (!content || !content->texels || content->bytes == 0) continue;
+        const bool wanted = content->lastFrame + 1 >= _frame && content->priority >= 0.0f;
+        if (!wanted || content->texture->isAnywhere())
+            byUse.push_back({{content->lastFrame, content->priority}, content.get()});
     }
     std::sort(byUse.begin(), byUse.end());
     for (auto next = byUse.begin(); count < bytes && next != byUse.end(); ++next) {
-        Entry& entry = _entries[next->second];
-        freed.push_back(entry.texels);
-        count += entry.bytes;
-        entry.texels = nullptr;
-        if (!entry.texture->isAnywhere()) _entries.erase(next->second);
+        Content& content = *next->second;
+        if (!content.texels) continue; // it stands there for another time step too
+        freed.push_back(content.texels);
+        count += content.bytes;
+        content.texels = nullptr;
     }
+    if (count > 0) eraseGone(nullptr);
     return count;
 }
 
-std::vector<osg::ref_ptr<BrickTexture>> Pages::textures() const
+// Expects the lock. Forgets what is nowhere any more, but for what is about to be uploaded.
+void Pages::eraseGone(const BrickTexture* kept)
 {
-    std::lock_guard<std::mutex> lock(_mutex);
-    std::vector<osg::ref_ptr<BrickTexture>> result;
-    for (const auto& entry : _entries)
-        if (entry.second.texture) result.push_back(entry.second.texture);
-    return result;
+    for (auto next = _entries.begin(); next != _entries.end();) {
+        const Entry& entry = next->second;
+        const bool gone = entry.content && !entry.reading && entry.content->texture != kept &&
+                          entry.content->isGone();
+        next = gone ? _entries.erase(next) : std::next(next);
+    }
 }
 
-std::vector<std::shared_ptr<PageCells>> Pages::cells() const
+std::int64_t Pages::textureBudget() const
 {
     std::lock_guard<std::mutex> lock(_mutex);
-    std::vector<std::shared_ptr<PageCells>> result;
-    for (const auto& entry : _entries)
-        if (entry.second.cells) result.push_back(entry.second.cells);
+    return _textureBudget;
+}
+
+std::vector<Pages::ContentPtr> Pages::contents() const
+{
+    std::vector<ContentPtr> result;
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        for (const auto& entry : _entries)
+            if (entry.second.content) result.push_back(entry.second.content);
+    }
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
     return result;
 }
 
@@ -273,18 +395,21 @@ void Pages::makeRoom(osg::State& state, const BrickTexture& texture)
 {
     std::vector<osg::ref_ptr<ResidentTexture>> others;
     const std::vector<std::shared_ptr<Pages>> all = Registry::instance().living();
-    for (const auto& pages : all)
-        for (const auto& other : pages->textures())
-            if (other != &texture) others.push_back(other);
+    for (const auto& pages : all) {
+        std::vector<osg::ref_ptr<ResidentTexture>> own;
+        bool isOwn = false;
+        for (const ContentPtr& content : pages->contents()) {
+            isOwn = isOwn || content->texture == &texture;
+            if (content->texture != &texture) own.push_back(content->texture);
+        }
+        if (const std::int64_t budget = isOwn ? pages->textureBudget() : 0)
+            keepWithin(budget - texture.bytes(), own, state);
+        others.insert(others.end(), own.begin(), own.end());
+    }
     keepWithin(getPagingBudget().textureBytes - texture.bytes(), others, state);
     for (const auto& pages : all) {
         std::lock_guard<std::mutex> lock(pages->_mutex);
-        for (auto next = pages->_entries.begin(); next != pages->_entries.end();) {
-            const Entry& entry = next->second;
-            const bool empty = entry.texture && entry.texture != &texture && !entry.texels &&
-                               !entry.reading && !entry.texture->isAnywhere();
-            next = empty ? pages->_entries.erase(next) : std::next(next);
-        }
+        pages->eraseGone(&texture);
     }
 }
 
@@ -292,25 +417,25 @@ std::int64_t Pages::textureBytes(unsigned contextId)
 {
     std::int64_t sum = 0;
     for (const auto& pages : Registry::instance().living())
-        for (const auto& texture : pages->textures())
-            if (texture->isIn(contextId)) sum += texture->bytes();
+        for (const ContentPtr& content : pages->contents())
+            if (content->texture->isIn(contextId)) sum += content->texture->bytes();
     return sum;
 }
 
 void Pages::resizeGLObjectBuffers(unsigned int maximum)
 {
-    for (const auto& texture : textures())
-        texture->resizeGLObjectBuffers(maximum);
-    for (const auto& page : cells())
-        page->resizeGLObjectBuffers(maximum);
+    for (const ContentPtr& content : contents()) {
+        content->texture->resizeGLObjectBuffers(maximum);
+        if (content->cells) content->cells->resizeGLObjectBuffers(maximum);
+    }
 }
 
 void Pages::releaseGLObjects(osg::State* state)
 {
-    for (const auto& texture : textures())
-        texture->releaseGLObjects(state);
-    for (const auto& page : cells())
-        page->releaseGLObjects(state);
+    for (const ContentPtr& content : contents()) {
+        content->texture->releaseGLObjects(state);
+        if (content->cells) content->cells->releaseGLObjects(state);
+    }
 }
 
 UploadAllowance& UploadAllowance::of(unsigned contextId)

@@ -3,15 +3,21 @@
 #include "BrickTexture.h"
 #include "PageCells.h"
 #include "PageQueue.h"
+#include "VisibilityTest.h"
 
 #include "../../Voxels.h"
+#include "TimeSteps.h"
 
 #include <osg/Image>
+#include <osg/View>
+#include <osg/observer_ptr>
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -20,7 +26,8 @@ namespace render {
 
 /// The pages of one Voxels on their way from the source into contexts: read by the threads of
 /// PageQueue, kept in main memory until each context that wants them has them and as long as there
-/// is room, and in contexts as long as there is room there. Thread safe; nothing here waits for a
+/// is room, and in contexts as long as there is room there. Pages of neighbouring time steps that
+/// turn out to be the same are kept, and uploaded, once. Thread safe; nothing here waits for a
 /// source.
 class Pages : public PageKeeper, public std::enable_shared_from_this<Pages>
 {
@@ -38,7 +45,7 @@ public:
     {
         Key key;
         unsigned contextId = 0, frame = 0;
-        float priority = 0.0f;
+        float priority = 0.0f; ///< below 0: may be let go of for any other
     };
     struct Page
     {
@@ -64,6 +71,28 @@ public:
     /// failed a short while ago, are left out. Returns how many are waited for.
     std::int64_t ask(std::uint64_t viewId, std::vector<PageRequest> requests);
 
+    /// The time steps of a view.
+    struct Steps
+    {
+        std::optional<TimeSteps> shown;      ///< the last that were there with all that was needed
+        std::optional<TimeSteps> pending;    ///< those that are waited for
+        std::int64_t missing = -1;           ///< pages, as it was last told; -1: never
+        osg::observer_ptr<osg::View> goesOn; ///< that was told to draw again and again; or null
+    };
+    Steps stepsOf(std::uint64_t viewId) const;
+    void setSteps(std::uint64_t viewId, const Steps& steps);
+
+    /// What is found out in a frame of a view, of which the last few are kept.
+    void addTest(std::uint64_t viewId, const std::shared_ptr<VisibilityTest>& test);
+    /// The newest of the last few frames with all its answers; null where there is none, or nothing
+    /// opaque in it.
+    std::shared_ptr<const VisibilityTest> lastTest(std::uint64_t viewId, unsigned frame) const;
+    /// Whether there was anything opaque in the view lately.
+    bool hadOpaque(std::uint64_t viewId) const;
+
+    /// Tells a viewer that draws on demand to go on, as long as any voxels want that.
+    static void setContinuous(osg::View& view);
+
     /// How many views look at any paged voxels, this one of `pages` included: those of this frame
     /// and the one before.
     static std::size_t viewCount(unsigned frame, Pages& pages, std::uint64_t viewId);
@@ -84,7 +113,8 @@ public:
     static std::shared_ptr<Pages> create();
 
 private:
-    struct Entry
+    /// What was read, of one page or of several time steps of it.
+    struct Content
     {
         osg::ref_ptr<BrickTexture> texture;
         osg::ref_ptr<const osg::Image> texels; ///< null once let go of
@@ -92,25 +122,42 @@ private:
         std::int64_t bytes = 0; ///< of the texels in memory
         unsigned lastFrame = 0;
         float priority = 0.0f;
-        bool reading = false;
         int offers = 0; ///< since it was read
+
+        bool isGone() const { return !texels && !texture->isAnywhere(); }
+    };
+    using ContentPtr = std::shared_ptr<Content>;
+    struct Entry
+    {
+        ContentPtr content; ///< null until it was read
+        bool reading = false;
         int failures = 0;
         double retryTime = 0.0; ///< seconds, by osg::Timer
+    };
+    struct View
+    {
+        unsigned frame = 0; ///< the last one
+        Steps steps;
+        std::deque<std::shared_ptr<VisibilityTest>> tests; ///< newest first
     };
 
     Pages() = default;
     static std::int64_t bytesOf(const std::map<Key, Entry>& entries);
     void fail(const Key& key, const Status& status);
-    std::vector<osg::ref_ptr<BrickTexture>> textures() const;
-    std::vector<std::shared_ptr<PageCells>> cells() const;
+    ContentPtr findTwin(const Key& key, const osg::Image& texels) const;
+    std::int64_t keep(const Key& key, const ContentPtr& twin, const ContentPtr& content);
+    std::vector<ContentPtr> contents() const;
+    std::int64_t textureBudget() const;
+    void eraseGone(const BrickTexture* kept);
 
     mutable std::mutex _mutex; ///< of what follows
     osg::observer_ptr<const Voxels> _voxels;
     unsigned _modified = 0, _layout = 0, _generation = 0;
-    unsigned _frame = 0; ///< the last one that looked at anything
+    unsigned _frame = 0;             ///< the last one that looked at anything
+    std::int64_t _textureBudget = 0; ///< of these; 0: none
     std::map<Key, Entry> _entries;
-    std::map<std::uint64_t, unsigned> _views; ///< the last frame of each
-    bool _reported = false;                   ///< that the source fails
+    std::map<std::uint64_t, View> _views; ///< of this frame and the one before
+    bool _reported = false;               ///< that the source fails
 };
 
 /// How much a context may be handed in a frame: the bytes that take the budget's milliseconds, as

@@ -19,9 +19,11 @@ struct JoinedBricks;
 struct SelectedBrick
 {
     std::int64_t index = 0;
-    core::Box3d box;     ///< frame; clip box, cut down to the geometry and to what shows
-    core::Box3d clipBox; ///< voxel frame
-    DrawnBrick texels;   ///< none where joined
+    core::Box3d box;           ///< frame; clip box, cut down to the geometry and to what shows
+    core::Box3d clipBox;       ///< voxel frame
+    DrawnBrick texels;         ///< none where joined
+    DrawnBrick nextTexels;     ///< of the second of two time steps, or none
+    float stepFraction = 0.0f; ///< of the second
     glm::vec3 textureScale{1.0f}, textureOffset{0.0f};
     std::shared_ptr<const BrickCells> cells;    ///< null where nothing is known
     std::shared_ptr<const JoinedBricks> joined; ///< null for one brick with a texture of its own

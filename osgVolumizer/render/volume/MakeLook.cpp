@@ -150,6 +150,7 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     look->maximumSteps = volume.sampling.maximumSamples + 2;
     look->voxelsPerSample = voxelsPerDepth(toEye, volume.sampling) * look->step;
     if (visitor.getState()) features.filterBits = filterBitsOf(*visitor.getState());
+    features.blendsSteps = volume.steps.blended;
     if (features.voxels) setInterpolation(volume, table, look->voxelsPerSample, features, reasons);
     reportReasons(appearance, reasons);
     if (features.slab) {

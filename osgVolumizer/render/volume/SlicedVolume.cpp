@@ -171,6 +171,8 @@ std::shared_ptr<const VolumeMesh> SlicedVolume::makeMesh(const VolumeInstance& v
         const SelectedBrick& brick = volume.bricks[static_cast<std::size_t>(triangles->bricks[i])];
         BrickBatch& batch = mesh->batches[i];
         batch.brick = brick.texels;
+        batch.nextBrick = brick.nextTexels;
+        batch.stepFraction = brick.stepFraction;
         batch.textureScale = brick.textureScale;
         batch.textureOffset = brick.textureOffset;
     }

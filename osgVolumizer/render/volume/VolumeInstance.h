@@ -2,6 +2,7 @@
 
 #include "../draw/VolumeDrawable.h"
 #include "../textures/SelectedBrick.h"
+#include "../textures/TimeSteps.h"
 #include "PreparedGeometry.h"
 
 #include "../../VolumeAppearance.h"
@@ -38,6 +39,7 @@ struct VolumeInstance
     bool exactFiltering = false; ///< for an error tolerance, whatever the appearance says
     double rayDistance = 1.0;    ///< pixels between rays, where all of the volume is drawn at once
     std::uint64_t viewId = 0;    ///< see viewIdOf()
+    TimeSteps steps;             ///< of voxels that have several
 
     // Known once sorting begins:
     std::shared_ptr<const std::vector<EyeLight>> lights; ///< null where unlit

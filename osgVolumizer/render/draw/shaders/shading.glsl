@@ -22,7 +22,8 @@ vec3 gradientAt(vec3 place)
     place = (place + 0.5) / vec3(textureSize(voxels, 0));
 #endif
     place = filterPlace(place, textureSize(voxels, 0));
-    return textureLod(voxels, place, 0.0).rgb * gradientDecode.x + gradientDecode.y;
+#define GRADIENT_IN(step) textureLod(step, place, 0.0).rgb
+    return OF_STEPS(GRADIENT_IN) * gradientDecode.x + gradientDecode.y;
 }
 #else
 float scalarAt(vec3 place)

@@ -4,6 +4,14 @@
 uniform sampler3D voxels;
 uniform vec3 textureScale; // voxel coordinate -> texture coordinate
 uniform vec3 textureOffset;
+#ifdef BLENDS_STEPS
+uniform sampler3D nextVoxels; // the same places, a time step later
+uniform float stepFraction;
+// Linear in both, so that interpolated values may be blended as well as samples.
+#define OF_STEPS(FETCH_FROM) mix(FETCH_FROM(voxels), FETCH_FROM(nextVoxels), stepFraction)
+#else
+#define OF_STEPS(FETCH_FROM) FETCH_FROM(voxels)
+#endif
 
 #ifdef RGBA
 #define TEXEL vec4
@@ -30,7 +38,9 @@ vec3 placeOf(vec3 voxelCoordinate)
 
 TEXEL texelAt(ivec3 i)
 {
-    return CHANNELS(texelFetch(voxels, clamp(i, ivec3(0), textureSize(voxels, 0) - 1), 0));
+    ivec3 held = clamp(i, ivec3(0), textureSize(voxels, 0) - 1);
+#define HELD_IN(step) CHANNELS(texelFetch(step, held, 0))
+    return OF_STEPS(HELD_IN);
 }
 
 // The samples about a place, and where it is between them.
@@ -89,7 +99,9 @@ TEXEL voxelAt(vec3 place)
     TEXEL x11 = mix(texelAt(cell + ivec3(0, 1, 1)), texelAt(cell + ivec3(1, 1, 1)), f.x);
     return mix(mix(x00, x10, f.y), mix(x01, x11, f.y), f.z);
 #else
-    return CHANNELS(texture(voxels, filterPlace(place, textureSize(voxels, 0))));
+    vec3 filtered = filterPlace(place, textureSize(voxels, 0));
+#define FILTERED_IN(step) CHANNELS(texture(step, filtered))
+    return OF_STEPS(FILTERED_IN);
 #endif
 }
 #endif
