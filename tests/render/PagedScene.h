@@ -71,8 +71,9 @@ public:
             std::unique_lock<std::mutex> lock(_mutex);
             ++_waiting;
             _changed.notify_all();
-            _changed.wait(lock, [&] { return level >= _open; });
+            _changed.wait(lock, [&] { return level >= _open && _given != 0; });
             --_waiting;
+            if (_given > 0) --_given;
         }
         if (failEvery > 0 && ++_calls % failEvery == 0)
             return {ErrorCode::FILE_UNREADABLE, "the disk is dead"};
@@ -106,6 +107,19 @@ public:
         _open = level;
         _changed.notify_all();
     }
+    // From now on no more reads than these are answered, in addition to those given before.
+    void give(int count) const
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        _given = std::max(_given, 0) + count;
+        _changed.notify_all();
+    }
+    void giveAll() const
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        _given = -1;
+        _changed.notify_all();
+    }
     void waitForReader() const
     {
         std::unique_lock<std::mutex> lock(_mutex);
@@ -130,7 +144,7 @@ private:
     int _steps = 1;
     mutable std::mutex _mutex;
     mutable std::condition_variable _changed;
-    mutable int _open = 0, _waiting = 0;
+    mutable int _open = 0, _waiting = 0, _given = -1;
     mutable std::atomic<int> _calls{0};
 };
 

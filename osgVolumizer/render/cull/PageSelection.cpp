@@ -165,6 +165,9 @@ private:
     void findHidden(Node& node) const;
     void append(const Node& node, const Node& place);
     DrawnBrick drawnBrick(const Node& node, int step) const;
+    static bool isFinal(const Node& node);
+    std::shared_ptr<const BrickCells> cellsOf(const Node& node) const;
+    bool isCutAway(const Node& node) const;
     bool cutToOccupied(const Node& node, SelectedBrick& brick);
 
     VolumeInstance& _volume;
@@ -301,7 +304,9 @@ void PageSelection::look(Node& node, Purpose purpose)
         page = _pages->look({keyOf(node, i), _contextId, _frame, priority});
         if (rank(page.state) < rank(node.state)) node.state = page.state;
     }
-    node.available = node.state == Pages::RESIDENT;
+    // What shows nothing need not be uploaded for that.
+    node.available = node.state == Pages::RESIDENT ||
+                     (node.state == Pages::READ && !node.split && isCutAway(node));
 }
 
 // What has been read goes to the context as far as this frame's time allows: the coarsest first,
@@ -397,7 +402,7 @@ void PageSelection::append(const Node& node, const Node& place)
                          (3.0 * _volume.look->voxelsPerSample);
     brick.stride = static_cast<float>(std::max(std::floor(steps + 1e-6), 1.0));
     // A coarse page may show nothing where a finer one does; that would not mean that it is hidden.
-    const bool final = &node == &place && (node.brick.level == 0 || node.error <= FINE_ENOUGH);
+    const bool final = &node == &place && isFinal(node);
     const bool uncut = _hasOpaque && !final && !node.uniform;
     if (!uncut && !cutToOccupied(node, brick)) return;
     brick.texels = drawnBrick(node, 0);
@@ -432,16 +437,39 @@ std::vector<DrawnBrick> PageSelection::uploads() const
     return uploads;
 }
 
-// Cuts a brick down to where it shows something; false where that is nowhere.
-bool PageSelection::cutToOccupied(const Node& node, SelectedBrick& brick)
+// Whether a page is drawn by itself, as good as it will be.
+bool PageSelection::isFinal(const Node& node)
+{
+    return node.brick.level == 0 || node.error <= FINE_ENOUGH;
+}
+
+// Where a page shows something; null where that is not known.
+std::shared_ptr<const BrickCells> PageSelection::cellsOf(const Node& node) const
 {
     const ProgramFeatures& features = _volume.look->features;
     // What a blend of two steps shows is more than what either does.
     const bool known = !_steps.blended && node.pages[0].cells;
     if (node.uniform || !known || !_skipping || !_volume.prepared->voxelFrame || features.cubic ||
         features.gathers())
-        return true;
-    brick.cells = node.pages[0].cells->get(_voxels, _query);
+        return nullptr;
+    return node.pages[0].cells->get(_voxels, _query);
+}
+
+// Whether nothing of a page is drawn.
+bool PageSelection::isCutAway(const Node& node) const
+{
+    const ProgramFeatures& features = _volume.look->features;
+    if ((_hasOpaque && !isFinal(node)) || !(features.slab || !features.preIntegrated)) return false;
+    const std::shared_ptr<const BrickCells> cells = cellsOf(node);
+    return cells && intersection(node.box, cells->box).empty();
+}
+
+// Cuts a brick down to where it shows something; false where that is nowhere.
+bool PageSelection::cutToOccupied(const Node& node, SelectedBrick& brick)
+{
+    const ProgramFeatures& features = _volume.look->features;
+    brick.cells = cellsOf(node);
+    if (!brick.cells) return true;
     _volume.cellSize = std::min<double>(_volume.cellSize, brick.cells->cellSize);
     _volume.cellCount += brick.cells->cellCount;
     _volume.occupiedCells += brick.cells->occupiedCount;
