@@ -113,6 +113,7 @@ const std::map<std::string, Handler>& handlers()
          }},
         {"--frames", [](Arguments& a, Words& w) { a.frames = w.integer(1, 1000000); }},
         {"--turn", [](Arguments& a, Words& w) { a.turnDegrees = w.number(-360.0, 360.0); }},
+        {"--time", [](Arguments& a, Words& w) { a.time = w.number(-1e9, 1e9); }},
         {"--wait-for-detail", [](Arguments& a, Words& w) { a.waitSeconds = w.number(0.0, 1e9); }},
         {"-O", [](Arguments& a, Words& w) { a.readerOptions = w.text(); }},
         {"--help", [](Arguments& a, Words&) { a.help = true; }},
@@ -197,6 +198,7 @@ Renders a scene without a window and writes the picture, the statistics, or both
   --frames N            frames to time, after one that is not (1)
   --turn DEGREES        the viewer goes round the scene by so much from frame to frame, and is back
                         for the picture (0)
+  --time SECONDS        simulation time, which plays volumes of several time steps (0)
   --wait-for-detail SECONDS
                         for how long to wait for volumes that are read in the background until the
                         picture is the final one (60)

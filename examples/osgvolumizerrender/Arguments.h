@@ -30,6 +30,7 @@ struct Arguments
     bool listDevices = false;
     int frames = 1;
     double turnDegrees = 0.0;  ///< from frame to frame
+    double time = 0.0;         ///< simulation time, seconds
     double waitSeconds = 60.0; ///< for volumes that are read in the background
     bool help = false;
     bool version = false;

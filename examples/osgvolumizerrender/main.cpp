@@ -135,6 +135,7 @@ Status run(const Arguments& arguments)
 
     support::RenderOptions options = viewOf(arguments, scene->getBound());
     options.device = device;
+    options.time = arguments.time;
     // Singular where the line of sight is along the up vector.
     if (!(std::abs(options.view(0, 0)) + std::abs(options.view(1, 0)) +
               std::abs(options.view(2, 0)) >

@@ -122,15 +122,17 @@ TreeBrick BrickTree::brick(std::int64_t index) const
     brick.offset = 0.5 * (brick.spacing - 1.0);
     const Level& level = _levels[static_cast<std::size_t>(brick.level)];
     const int margin = (_overlap - 1) / 2;
+    const double perSpacing = 1.0 / brick.spacing; // exact: a power of two
     for (int axis = 0; axis < 3; ++axis) {
         const int c = brick.coordinates[axis];
         brick.clipBox.min[axis] = cut(brick.level, c, axis);
         brick.clipBox.max[axis] = cut(brick.level, c + 1, axis);
-        const double low = (brick.clipBox.min[axis] - brick.offset) / brick.spacing;
-        const double high = (brick.clipBox.max[axis] - brick.offset) / brick.spacing;
-        const int last = level.size[axis] - 1;
-        brick.samples.min[axis] = std::clamp(int(std::floor(low)) - margin, 0, last);
-        brick.samples.max[axis] = std::clamp(int(std::ceil(high)) + margin, 0, last) + 1;
+        const double low = (brick.clipBox.min[axis] - brick.offset) * perSpacing;
+        const double high = (brick.clipBox.max[axis] - brick.offset) * perSpacing;
+        const int last = level.size[axis] - 1, below = int(low), above = int(high);
+        const int first = below - (below > low) - margin; // rounded down, and up
+        brick.samples.min[axis] = std::clamp(first, 0, last);
+        brick.samples.max[axis] = std::clamp(above + (above < high) + margin, 0, last) + 1;
     }
     return brick;
 }

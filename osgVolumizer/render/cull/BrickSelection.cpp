@@ -7,6 +7,8 @@
 
 #include <osgUtil/CullVisitor>
 
+#include <glm/common.hpp>
+
 #include <cmath>
 
 namespace osgVolumizer {
@@ -63,12 +65,14 @@ float priorityOf(const core::Box3d& box, const VolumeInstance& volume)
 
 osg::BoundingBox objectBounds(const core::Box3d& box, const glm::dmat4& frameToObject)
 {
-    osg::BoundingBox result;
-    for (int i = 0; i < 8; ++i) {
-        const glm::dvec4 p = frameToObject * glm::dvec4(box.corner(i), 1.0);
-        result.expandBy(osg::Vec3d(p.x, p.y, p.z));
-    }
-    return result;
+    const glm::dvec3 center(frameToObject * glm::dvec4(box.center(), 1.0));
+    const glm::dvec3 half = 0.5 * box.size();
+    const glm::dvec3 reach = half.x * glm::abs(glm::dvec3(frameToObject[0])) +
+                             half.y * glm::abs(glm::dvec3(frameToObject[1])) +
+                             half.z * glm::abs(glm::dvec3(frameToObject[2]));
+    const glm::dvec3 low = center - reach, high = center + reach;
+    return {osg::Vec3(osg::Vec3d(low.x, low.y, low.z)),
+            osg::Vec3(osg::Vec3d(high.x, high.y, high.z))};
 }
 
 OccupancyQuery occupancyQuery(const VolumeInstance& volume, const Voxels& voxels)
