@@ -260,7 +260,7 @@ void Voxels::findRange() const
 {
     core::ValueRange found;
     if (isPaged()) {
-        constexpr int MOST = 16; // steps
+        constexpr int MOST = 5; // steps, which may have to be opened for it
         const int count = std::min(_stepCount, MOST);
         for (int i = 0; i < count; ++i)
             found.expand(findStepRange(

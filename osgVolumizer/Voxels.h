@@ -63,7 +63,7 @@ public:
     /// can still divide by. Default: the type's
     /// range for 8 bit and RGBA, else the lowest and highest value found in the data, once, on the
     /// first call of getRange(); that reads all bricks where the source does not know it. Of paged
-    /// voxels setSource() reads the coarsest level for it, of at most 16 time steps.
+    /// voxels setSource() reads the coarsest level for it, of at most five time steps.
     ReportedStatus setRange(const osg::Vec2d& range);
     osg::Vec2d getRange() const;
     bool hasExplicitRange() const;

@@ -192,8 +192,10 @@ TEST_F(TimeSteps, TheNextAreReadAhead)
     volume->setTimeRate(1.0);
     support::SceneRenderer renderer(volume, viewOf(SIZE, EYE));
     settle(renderer);
+    int idle = 0; // frames in a row
     renderUntil(renderer, [&](const FloatImage&) {
-        return renderer.counters()["osgVolumizer pages waited for"] == 0.0;
+        idle = renderer.counters()["osgVolumizer pages waited for"] == 0.0 ? idle + 1 : 0;
+        return idle > 6;
     });
     // Steps 0 to 3 have been read; the source answers no more, and time goes on.
     source->openFrom(8);

@@ -522,20 +522,24 @@ void PageSelection::report(std::int64_t missing, std::int64_t waiting) const
               static_cast<double>(value.second));
 }
 
-// What follows where time goes on, as far ahead as there is room for in half of the budget.
-void appendSteps(const VolumeInstance& volume, const TimeSteps& steps, std::int64_t bytesOfStep,
-                 const std::function<PageSelection(const TimeSteps&)>& selection,
+// What follows where time goes on, as far ahead as there is room for in half of the budget: one
+// step a frame, the next one once all of that has been read.
+void appendAhead(const VolumeInstance& volume, const TimeSteps& steps, std::int64_t bytesOfStep,
+                 const std::function<PageSelection(const TimeSteps&)>& selection, int& ahead,
                  std::vector<PageRequest>& requests)
 {
     constexpr int MOST = 3;
     const std::int64_t room = getPagingBudget().memoryBytes / 2;
-    for (int ahead = 1; ahead <= MOST && (ahead + 1) * bytesOfStep <= room; ++ahead) {
-        const TimeSteps next = stepsAhead(*volume.appearance, steps, ahead);
-        if (next.sameSteps(steps)) return; // all are there
+    if (ahead > MOST || (ahead + 1) * bytesOfStep > room) ahead = 1;
+    if ((ahead + 1) * bytesOfStep > room) return;
+    const TimeSteps next = stepsAhead(*volume.appearance, steps, ahead);
+    const std::size_t before = requests.size();
+    if (!next.sameSteps(steps)) {
         PageSelection pages = selection(next);
         pages.choose(PageSelection::AHEAD);
         pages.appendRequests(ahead, requests);
     }
+    if (requests.size() == before) ++ahead;
 }
 
 // Tells a view how far its picture is, and a viewer that draws on demand to go on until it is
@@ -549,7 +553,7 @@ void tell(const Voxels& voxels, std::int64_t missing, bool plays, std::uint64_t 
     const bool goesOn = missing > 0 || plays, wentOn = known.goesOn.valid();
     known.missing = missing;
     known.goesOn = goesOn ? view : nullptr;
-    pages.setSteps(viewId, known);
+    pages.setSteps(viewId, frameOf(visitor), known);
     if (changed)
         if (const PagingCallback callback = getPagingCallback())
             callback({&voxels, camera, missing});
@@ -573,6 +577,7 @@ void selectPages(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& 
     const bool waits =
         known.pending && known.pending->blended == now.blended && !known.pending->sameSteps(now);
     const TimeSteps aim = waits ? *known.pending : now;
+    if (!known.shown || !known.shown->sameSteps(aim)) known.ahead = 1;
     PageSelection wanted = selection(aim);
     wanted.choose(PageSelection::TO_DRAW);
     std::optional<PageSelection> instead;
@@ -594,10 +599,10 @@ void selectPages(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& 
     if (!wanted.isComplete() && !wanted.hasFailed()) known.pending = aim;
     const std::int64_t missing = wanted.missing() + (aim.sameSteps(now) ? 0 : 1);
     const bool plays = voxels.getStepCount() > 1 && volume.appearance->getTimeRate() != 0.0;
-    tell(voxels, missing, plays, volume.viewId, known, *pages, visitor);
     std::vector<PageRequest> requests;
     wanted.appendRequests(0, requests);
-    if (plays) appendSteps(volume, aim, wanted.memoryBytes(), selection, requests);
+    if (plays) appendAhead(volume, aim, wanted.memoryBytes(), selection, known.ahead, requests);
+    tell(voxels, missing, plays, volume.viewId, known, *pages, visitor);
     const std::int64_t waiting = pages->ask(volume.viewId, std::move(requests));
     wanted.report(missing, waiting);
 }

@@ -156,10 +156,12 @@ Pages::Steps Pages::stepsOf(std::uint64_t viewId) const
     return found == _views.end() ? Steps() : found->second.steps;
 }
 
-void Pages::setSteps(std::uint64_t viewId, const Steps& steps)
+void Pages::setSteps(std::uint64_t viewId, unsigned frame, const Steps& steps)
 {
     std::lock_guard<std::mutex> lock(_mutex);
-    _views[viewId].steps = steps;
+    View& view = _views[viewId];
+    view.frame = std::max(view.frame, frame);
+    view.steps = steps;
 }
 
 namespace {

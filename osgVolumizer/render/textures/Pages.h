@@ -76,11 +76,12 @@ public:
     {
         std::optional<TimeSteps> shown;      ///< the last that were there with all that was needed
         std::optional<TimeSteps> pending;    ///< those that are waited for
+        int ahead = 1;                       ///< how far ahead is being read
         std::int64_t missing = -1;           ///< pages, as it was last told; -1: never
         osg::observer_ptr<osg::View> goesOn; ///< that was told to draw again and again; or null
     };
     Steps stepsOf(std::uint64_t viewId) const;
-    void setSteps(std::uint64_t viewId, const Steps& steps);
+    void setSteps(std::uint64_t viewId, unsigned frame, const Steps& steps);
 
     /// What is found out in a frame of a view, of which the last few are kept.
     void addTest(std::uint64_t viewId, const std::shared_ptr<VisibilityTest>& test);
