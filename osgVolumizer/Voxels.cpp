@@ -10,6 +10,8 @@
 #include <exception>
 #include <new>
 
+#include <sys/mman.h>
+
 namespace osgVolumizer {
 
 struct Voxels::Brick
@@ -38,6 +40,19 @@ ReportedStatus refuse(const char* what, const osg::Vec3d& v, const core::NumberR
 osg::Vec3i toOsg(const glm::ivec3& v)
 {
     return {v.x, v.y, v.z};
+}
+
+// Bricks of many kilobytes come and go by the thousand, in any order: the heap would be left full
+// of holes between them, so they are the system's, which gets them back at once.
+std::shared_ptr<unsigned char> allocateBrick(std::size_t bytes)
+{
+    constexpr std::size_t MANY = 64 << 10;
+    if (bytes < MANY) return {new unsigned char[bytes], std::default_delete<unsigned char[]>()};
+    void* memory =
+        ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    return {static_cast<unsigned char*>(memory),
+            [bytes](unsigned char* brick) { ::munmap(brick, bytes); }};
 }
 
 unsigned nextLayoutCount()
@@ -381,7 +396,7 @@ Voxels::Block Voxels::readBrick(int step, int level, const core::Box3i& samples,
         const Block own = step == 0 && level == 0 ? _source->share(samples) : Block();
         shared = own && own.bytes == static_cast<std::size_t>(bytes);
         if (shared) return own;
-        std::shared_ptr<unsigned char[]> data(new unsigned char[static_cast<std::size_t>(bytes)]);
+        const std::shared_ptr<unsigned char> data = allocateBrick(static_cast<std::size_t>(bytes));
         status = _source->readStep(step, level, samples, data.get());
         if (status.ok()) return {data, data.get(), static_cast<std::size_t>(bytes)};
     } catch (const std::bad_alloc&) {

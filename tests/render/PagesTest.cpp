@@ -148,19 +148,25 @@ TEST_F(Pages, NoFrameWaitsForARead)
     EXPECT_LT(difference.maximum, 0.15);
 }
 
-// 50 MB under budgets of 4 MB each; with OSGVOLUMIZER_TEST_LARGE 4 GB under 256 and 128.
+// 134 MB under budgets of 4 MB each; with OSGVOLUMIZER_TEST_LARGE 4 GB under 256 and 128.
 TEST_F(Pages, BudgetsHoldInEveryFrameOfAFlight)
 {
     const bool large = isLarge();
-    const int size = large ? 1626 : 368;
+    const int size = large ? 1626 : 512;
     const std::int64_t memory = (large ? 256 : 4) * MEGABYTE;
     const std::int64_t textures = (large ? 128 : 4) * MEGABYTE;
     setBudget(memory, textures);
     const osg::ref_ptr<FormulaSource> source = new FormulaSource(size, waves, VoxelType::UINT8);
-    source->page = large ? 64 : 32;
+    // Rows of 64 bytes, and 32: Mesa's software rasteriser pads those of 65 to 128.
+    source->page = large ? 63 : 31;
     const double scale = size / 500.0;
     support::SceneRenderer renderer(
         volumeOf(source), viewOf(size, osg::Vec3d(700, -400, 600) * scale).size(256, 192));
+    // Textures of a software rasteriser are pieces of the heap, between which holes are left: not
+    // so where each is the system's own. And what a driver takes to start is not counted.
+    mallopt(M_MMAP_THRESHOLD, 64 << 10);
+    support::renderScene(volumeOf(new FormulaSource(40, waves, VoxelType::UINT8)),
+                         viewOf(40, {80, -60, 70}).size(256, 192));
     const std::int64_t before = residentBytes();
     forgetPeak();
     settle(renderer);
@@ -185,9 +191,9 @@ TEST_F(Pages, BudgetsHoldInEveryFrameOfAFlight)
         reads += level;
     EXPECT_GT(reads * pageBytes, memory);
     EXPECT_GT(counters["osgVolumizer bytes of page textures"], 0.0);
-    // A software rasteriser has textures in main memory; besides them, what a driver takes to
-    // start.
-    const std::int64_t peak = peakBytes() - before, slack = 96 * MEGABYTE;
+    // Besides pages and textures: framebuffers, shaders, objects of the driver, which cells of
+    // pages show something (a 20th of their bytes), and what the source needs to make its samples.
+    const std::int64_t peak = peakBytes() - before, slack = (large ? 160 : 64) * MEGABYTE;
     if (peak > 0 && !support::INSTRUMENTED) {
         EXPECT_LT(peak, memory + textures + slack);
     }
