@@ -1,5 +1,7 @@
 #include "VisibilityQueries.h"
 
+#include <string>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -13,6 +15,15 @@ constexpr GLenum AVAILABLE = 0x8867; // GL_QUERY_RESULT_AVAILABLE
 constexpr std::size_t MOST = 16384;  // that are open
 
 } // namespace
+
+bool VisibilityQueries::areUsable()
+{
+    if (!_isSoftware) {
+        const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+        _isSoftware = renderer && std::string(renderer).find("llvmpipe") != std::string::npos;
+    }
+    return !*_isSoftware || contextResourcesCount() == 1;
+}
 
 void VisibilityQueries::begin(osg::State& state, const std::shared_ptr<VisibilityTest>& test,
                               std::int64_t page)
@@ -40,10 +51,11 @@ void VisibilityQueries::end(osg::State& state)
     _begun = false;
 }
 
-// Of frames before this one: of this one more may follow. Queries end in order.
+// Of frames before the last one: those have been drawn, and asking does not make a software
+// rasteriser finish in the middle of a frame. Queries end in order.
 void VisibilityQueries::fetch(osg::GLExtensions& gl, unsigned frame)
 {
-    while (!_open.empty() && _open.front().test->frame() != frame) {
+    while (!_open.empty() && _open.front().test->frame() + 1 < frame) {
         GLuint value = 0;
         gl.glGetQueryObjectuiv(_open.front().name, AVAILABLE, &value);
         if (!value) return;

@@ -166,7 +166,7 @@ void Pages::setSteps(std::uint64_t viewId, unsigned frame, const Steps& steps)
 
 namespace {
 
-constexpr unsigned FRAMES_OF_TESTS = 4;
+constexpr unsigned FRAMES_OF_TESTS = 6;
 
 } // namespace
 
