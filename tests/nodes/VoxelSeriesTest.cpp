@@ -38,6 +38,11 @@ unsigned char firstOf(const VoxelSource& source, int step)
     return value;
 }
 
+osg::ref_ptr<osgDB::Options> optionsOf(const std::string& text)
+{
+    return new osgDB::Options(text);
+}
+
 class VoxelSeriesFiles : public support::FolderTest
 {
 protected:
@@ -54,7 +59,7 @@ protected:
     }
     static Result<osg::ref_ptr<Voxels>> readSeries(const std::string& name)
     {
-        return readVoxels(name, new osgDB::Options("series=on spacing=2,3,4"));
+        return readVoxels(name, optionsOf("series=on spacing=2,3,4").get());
     }
 };
 
@@ -191,7 +196,7 @@ TEST_F(VoxelSeriesFiles, FilesOfAPatternAreSteps)
     EXPECT_EQ(ErrorCode::FILE_NOT_FOUND, readSeries(path("w%d.tif")).status.code);
     EXPECT_EQ(ErrorCode::FILE_NOT_FOUND, readSeries(path("none")).status.code);
     EXPECT_EQ(ErrorCode::VALUE_INVALID,
-              readVoxels(path("v%d.tif"), new osgDB::Options("series=yes")).status.code);
+              readVoxels(path("v%d.tif"), optionsOf("series=yes").get()).status.code);
 }
 
 TEST_F(VoxelSeriesFiles, FilesOfAFolderAreSteps)
@@ -206,7 +211,7 @@ TEST_F(VoxelSeriesFiles, FilesOfAFolderAreSteps)
 TEST_F(VoxelSeriesFiles, TheyArePlayedUnlessAStepIsAskedFor)
 {
     const auto rateOf = [&](const std::string& options) {
-        const auto volume = readVolume(path("v%d.tif"), new osgDB::Options(options));
+        const auto volume = readVolume(path("v%d.tif"), optionsOf(options).get());
         EXPECT_TRUE(volume.ok()) << volume.status.text;
         return volume.ok() ? (*volume)->getTimeRate() : -1.0;
     };

@@ -223,7 +223,8 @@ TEST_P(SerializerTest, SeriesAreKeptWithHowTheyArePlayed)
 {
     for (int step = 0; step < 3; ++step)
         writeFile("v" + std::to_string(step) + ".raw", std::string(24, static_cast<char>(step)));
-    const auto read = readVoxels(path("v%d.raw") + ".2,3,4,uint8", new osgDB::Options("series=on"));
+    const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("series=on");
+    const auto read = readVoxels(path("v%d.raw") + ".2,3,4,uint8", options.get());
     ASSERT_TRUE(read.ok()) << read.status.text;
     osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
     a->setVoxels(read->get());

@@ -1,7 +1,5 @@
 #include "VisibilityQueries.h"
 
-#include <string>
-
 namespace osgVolumizer {
 namespace render {
 
@@ -15,15 +13,6 @@ constexpr GLenum AVAILABLE = 0x8867; // GL_QUERY_RESULT_AVAILABLE
 constexpr std::size_t MOST = 16384;  // that are open
 
 } // namespace
-
-bool VisibilityQueries::areUsable()
-{
-    if (!_isSoftware) {
-        const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-        _isSoftware = renderer && std::string(renderer).find("llvmpipe") != std::string::npos;
-    }
-    return !*_isSoftware || contextResourcesCount() == 1;
-}
 
 void VisibilityQueries::begin(osg::State& state, const std::shared_ptr<VisibilityTest>& test,
                               std::int64_t page)

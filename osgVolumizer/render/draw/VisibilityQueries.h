@@ -5,7 +5,6 @@
 
 #include <deque>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace osgVolumizer {
@@ -16,9 +15,6 @@ namespace render {
 class VisibilityQueries : public ContextPart
 {
 public:
-    /// Whether to ask at all. Mesa's software rasteriser (22.3) crashes now and then where contexts
-    /// of several threads have many queries.
-    bool areUsable();
     /// Begins a query, if the context has them; what is drawn until end() counts.
     void begin(osg::State& state, const std::shared_ptr<VisibilityTest>& test, std::int64_t page);
     void end(osg::State& state);
@@ -38,7 +34,6 @@ private:
     std::vector<GLuint> _free;
     std::deque<Open> _open; ///< oldest first
     bool _begun = false;
-    std::optional<bool> _isSoftware; ///< not known before the first frame
 };
 
 } // namespace render

@@ -16,7 +16,6 @@
 #include "FusedDrawing.h"
 #include "RayTarget.h"
 #include "SubstituteProgram.h"
-#include "VisibilityQueries.h"
 #include "VolumeUniforms.h"
 
 #include "../../core/sampling/View.h"
@@ -178,9 +177,7 @@ void VolumeDrawable::drawMarched(osg::RenderInfo& renderInfo,
         setPaints(renderInfo, resources->limits, uniforms, *_part->paints, UNIT_FIRST_PAINT);
     BatchDrawing drawing{renderInfo, resources->limits, uniforms, _part->features, view};
     const AccumulationBuffers& buffers = resources->part<AccumulationBuffers>();
-    if (_part->features.slab && buffers.hasOpaqueDepth &&
-        resources->part<VisibilityQueries>().areUsable())
-        drawing.tests = resources.get();
+    if (_part->features.slab && buffers.hasOpaqueDepth) drawing.tests = resources.get();
     if (_part->features.coarse) setOneRayPerPixel(uniforms, currentViewport());
     if (compute.isUsed()) {
         if (compute.draw(drawing))
