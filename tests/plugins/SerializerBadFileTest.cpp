@@ -1,9 +1,12 @@
 #include "SerializerFixture.h"
 
+#include "../support/LeaksOfOthers.h"
+
 #include <osg/Group>
 #include <osgDB/Registry>
 
 #include <algorithm>
+#include <optional>
 #include <random>
 
 namespace SerializerBadFileTest {
@@ -221,6 +224,10 @@ TEST_P(BadFileTest, CutTextOfAWholeSceneIsSurvived)
     if (GetParam() == std::string("osgb")) return; // see above
     const std::string content = write(*makeScene());
     std::size_t damaged = 0;
+    // Of XML that ends after the "<" behind a reference to a group OSG makes a group that is in
+    // itself, and so is never let go of.
+    std::optional<test::LeaksOfOthers> cycles;
+    if (GetParam() == std::string("osgx")) cycles.emplace();
     // An empty file is no case for us: OSG does not know its format, and leaks its options.
     for (std::size_t length = 17; length < content.size(); length += 17)
         damaged += !restIsThere(read(content.substr(0, length)).get());
