@@ -14,8 +14,6 @@ namespace osgVolumizer {
 
 namespace {
 
-constexpr int PAGE_SIZE = 64; // of sources of one level
-
 // What is held in memory of a source as long as it is open.
 std::int64_t heldBytes(const VoxelSource& source)
 {
@@ -38,7 +36,7 @@ struct VoxelSeries::Steps
     Opener opener;
     Description description;
     int levels = 1; // of each source
-    int pageSize = PAGE_SIZE;
+    int pageSize = 0;
 
     std::mutex mutex;                           // of what follows
     std::map<int, std::shared_ptr<Slot>> slots; // of steps that are open, or being opened
@@ -168,7 +166,7 @@ ReportedStatus VoxelSeries::setSteps(int count, Opener opener)
     if (Status status = steps->description.validate(); !status.ok())
         return reported(std::move(status));
     steps->levels = (*first)->levelCount();
-    if (steps->levels > 1) steps->pageSize = (*first)->pageSize();
+    steps->pageSize = steps->levels > 1 ? (*first)->pageSize() : VoxelSource::pageSize();
     auto slot = std::make_shared<Steps::Slot>();
     slot->source = *first;
     steps->slots[0] = slot;
@@ -203,8 +201,9 @@ std::optional<std::pair<double, double>> VoxelSeries::valueRange(const core::Box
 int VoxelSeries::levelCount() const
 {
     if (!_steps) return 1;
-    return _steps->levels > 1 ? _steps->levels
-                              : core::BrickTree::levelsFor(_steps->description.size, PAGE_SIZE);
+    return _steps->levels > 1
+               ? _steps->levels
+               : core::BrickTree::levelsFor(_steps->description.size, _steps->pageSize);
 }
 
 Status VoxelSeries::readLevel(int level, const core::Box3i& region, void* destination) const
@@ -220,7 +219,7 @@ std::optional<std::pair<double, double>> VoxelSeries::levelRange(int level,
 
 int VoxelSeries::pageSize() const
 {
-    return _steps ? _steps->pageSize : PAGE_SIZE;
+    return _steps ? _steps->pageSize : VoxelSource::pageSize();
 }
 
 int VoxelSeries::stepCount() const

@@ -1,6 +1,8 @@
 // A mixed scene that changes while it is drawn, in every threading model, with two contexts. Built
 // with -DOSGVOLUMIZER_SANITIZE=thread this is the test for data races.
 
+#include "TwoContexts.h"
+
 #include <render/MixedScene.h>
 
 #include <support/GLTest.h>
@@ -115,21 +117,8 @@ TEST_P(MergeThreads, ChangingSceneEndsLikeAStillOne)
     options.threading = GetParam();
     options.frames = FRAMES;
     support::SceneRenderer renderer(scene.root(), options);
-    // A second camera in a context of its own draws the same nodes.
     osgViewer::Viewer& viewer = renderer.viewer();
-    viewer.stopThreading();
-    osg::ref_ptr<osg::Camera> slave = new osg::Camera;
-    slave->setGraphicsContext(new support::SurfacelessGraphicsContext(64, 64));
-    slave->setProjectionResizePolicy(osg::Camera::FIXED);
-    slave->setClearColor(osg::Vec4());
-    const osg::ref_ptr<PictureTarget> target = new PictureTarget(*slave, 64, 64);
-    viewer.addSlave(slave, osg::Matrixd(), osg::Matrixd());
-    viewer.realize();
-    // In its first frame each of OSG's renderers sets the view's lighting mode in the state set
-    // that all cameras of the view share, without a lock: no threads yet.
-    viewer.stopThreading();
-    viewer.frame();
-    viewer.startThreading();
+    const osg::ref_ptr<PictureTarget> target = addSecondContext(viewer, 64, 64);
     target->request(FRAMES);
     const FloatImage picture = renderer.render(), other = target->wait();
     viewer.stopThreading();
@@ -139,12 +128,7 @@ TEST_P(MergeThreads, ChangingSceneEndsLikeAStillOne)
     EXPECT_LE(support::compare(other, still).maximum, 1e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Models, MergeThreads,
-    ::testing::Values(osgViewer::ViewerBase::SingleThreaded,
-                      osgViewer::ViewerBase::CullDrawThreadPerContext,
-                      osgViewer::ViewerBase::DrawThreadPerContext,
-                      osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext));
+INSTANTIATE_TEST_SUITE_P(Models, MergeThreads, ::testing::ValuesIn(THREADING_MODELS));
 
 } // namespace
 

@@ -2,6 +2,8 @@
 // past, in every threading model. Built with -DOSGVOLUMIZER_SANITIZE=thread this is the test for
 // data races of the threads that read.
 
+#include "TwoContexts.h"
+
 #include <render/MixedScene.h>
 #include <render/PagedScene.h>
 
@@ -72,17 +74,7 @@ TEST_P(PageThreads, AFlightEndsWithThePictureOfAVolumeInMemory)
     options.threading = GetParam();
     support::SceneRenderer renderer(sceneOf(volume), options);
     osgViewer::Viewer& viewer = renderer.viewer();
-    viewer.stopThreading();
-    const osg::ref_ptr<osg::Camera> slave = new osg::Camera;
-    slave->setGraphicsContext(new support::SurfacelessGraphicsContext(SHOT, SHOT));
-    slave->setProjectionResizePolicy(osg::Camera::FIXED);
-    slave->setClearColor(osg::Vec4());
-    const osg::ref_ptr<PictureTarget> target = new PictureTarget(*slave, SHOT, SHOT);
-    viewer.addSlave(slave, osg::Matrixd(), osg::Matrixd());
-    viewer.realize();
-    viewer.stopThreading(); // see MergeThreadsTest
-    viewer.frame(0.0);
-    viewer.startThreading();
+    const osg::ref_ptr<PictureTarget> target = addSecondContext(viewer, SHOT, SHOT);
     for (unsigned frame = 0; frame < FLIGHT; ++frame) {
         renderer.options().view = viewAt(0.15 * frame).view;
         renderer.options().time = 0.1 * frame;
@@ -103,11 +95,6 @@ TEST_P(PageThreads, AFlightEndsWithThePictureOfAVolumeInMemory)
     EXPECT_EQ(target->glError(), 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Models, PageThreads,
-    ::testing::Values(osgViewer::ViewerBase::SingleThreaded,
-                      osgViewer::ViewerBase::CullDrawThreadPerContext,
-                      osgViewer::ViewerBase::DrawThreadPerContext,
-                      osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext));
+INSTANTIATE_TEST_SUITE_P(Models, PageThreads, ::testing::ValuesIn(THREADING_MODELS));
 
 } // namespace PageThreadsTest

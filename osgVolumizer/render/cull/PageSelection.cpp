@@ -83,7 +83,6 @@ public:
     /// Whether the picture is the final one.
     bool isComplete() const { return _missing == 0; }
     bool hasFailed() const { return _failed > 0; }
-    bool showsNothing() const { return _nodes.empty(); }
     std::int64_t missing() const { return _missing; }
 
     void draw()

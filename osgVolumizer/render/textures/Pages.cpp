@@ -20,6 +20,8 @@ namespace {
 
 // Seconds until what failed is tried again: doubled each time.
 constexpr double FIRST_RETRY = 0.25, LAST_RETRY = 30.0;
+// Frames of a view whose tests of visibility are kept.
+constexpr unsigned FRAMES_OF_TESTS = 6;
 
 double now()
 {
@@ -163,12 +165,6 @@ void Pages::setSteps(std::uint64_t viewId, unsigned frame, const Steps& steps)
     view.frame = std::max(view.frame, frame);
     view.steps = steps;
 }
-
-namespace {
-
-constexpr unsigned FRAMES_OF_TESTS = 6;
-
-} // namespace
 
 void Pages::addTest(std::uint64_t viewId, const std::shared_ptr<VisibilityTest>& test)
 {
