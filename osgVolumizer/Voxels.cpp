@@ -79,7 +79,7 @@ Voxels::Voxels(VoxelSource* source) : Voxels()
 Voxels::Voxels(const Voxels& o, const osg::CopyOp& op)
     : osg::Object(o, op),
       _source(dynamic_cast<VoxelSource*>(op(static_cast<const osg::Object*>(o._source.get())))),
-      _description(o._description), _brickSize(o._brickSize), _overlap(o._overlap),
+      _description(o._description), _brickSize(o._brickSize), _partialBricks(o._partialBricks), _overlap(o._overlap),
       _layout(o._layout), _tree(o._tree), _stepCount(o._stepCount),
       _textureBudget(o._textureBudget), _fileName(o._fileName), _filePath(o._filePath),
       _fileOptions(o._fileOptions), _layoutCount(nextLayoutCount())
@@ -103,7 +103,7 @@ ReportedStatus Voxels::setSource(VoxelSource* source)
         if (Status status = description.validate(); !status.ok())
             return reported(std::move(status));
         Result<core::BrickLayout> made =
-            core::BrickLayout::create(description.size, _brickSize, _overlap);
+            core::BrickLayout::create(description.size, _brickSize, _overlap, _partialBricks);
         if (!made.ok()) return reported(made.status);
         layout = *made;
         if (Status status = makeTree(source, _overlap, tree); !status.ok())
@@ -240,8 +240,13 @@ Result<VoxelBlock> Voxels::readPage(std::int64_t page, int step) const
 
 std::optional<std::pair<double, double>> Voxels::getPageRange(std::int64_t page, int step) const
 {
-    const core::TreeBrick brick = _tree.brick(page);
-    return knownRange(step, brick.level, brick.samples);
+    return getPageRange(_tree.brick(page), step);
+}
+
+std::optional<std::pair<double, double>> Voxels::getPageRange(const core::TreeBrick& page,
+                                                              int step) const
+{
+    return knownRange(step, page.level, page.samples);
 }
 
 std::optional<std::pair<double, double>> Voxels::knownRange(int step, int level,
@@ -299,12 +304,17 @@ void Voxels::findRange() const
 
 ReportedStatus Voxels::setBrickSize(const osg::Vec3i& samples)
 {
-    return rebuildLayout({samples.x(), samples.y(), samples.z()}, _overlap);
+    return rebuildLayout({samples.x(), samples.y(), samples.z()}, _overlap, _partialBricks);
+}
+
+ReportedStatus Voxels::setPartialBricks(core::PartialBricks partial)
+{
+    return rebuildLayout(_brickSize, _overlap, partial);
 }
 
 ReportedStatus Voxels::setOverlap(int samples)
 {
-    return rebuildLayout(_brickSize, samples);
+    return rebuildLayout(_brickSize, samples, _partialBricks);
 }
 
 Status Voxels::requireOverlap(int samples)
@@ -313,7 +323,7 @@ Status Voxels::requireOverlap(int samples)
     if (valid() && _layout.brickCount() == 1 && !isPaged()) {
         // A single brick is all of the voxels, however much it would share.
         Result<core::BrickLayout> layout =
-            core::BrickLayout::create(_description.size, _brickSize, samples);
+            core::BrickLayout::create(_description.size, _brickSize, samples, _partialBricks);
         if (layout.ok() && layout->brickCount() == 1) {
             _layout = *layout;
             _overlap = samples;
@@ -321,21 +331,24 @@ Status Voxels::requireOverlap(int samples)
         }
     }
     const CallerReports quiet;
-    return rebuildLayout(_brickSize, samples);
+    return rebuildLayout(_brickSize, samples, _partialBricks);
 }
 
-ReportedStatus Voxels::rebuildLayout(const glm::ivec3& brickSize, int overlap)
+ReportedStatus Voxels::rebuildLayout(const glm::ivec3& brickSize, int overlap,
+                                     core::PartialBricks partial)
 {
     // Without voxels, a volume of one sample stands in, so that the numbers are checked just the
     // same.
     const glm::ivec3 size = valid() ? _description.size : glm::ivec3(1);
-    const Result<core::BrickLayout> layout = core::BrickLayout::create(size, brickSize, overlap);
+    const Result<core::BrickLayout> layout =
+        core::BrickLayout::create(size, brickSize, overlap, partial);
     if (!layout.ok()) return reported(layout.status);
     core::BrickTree tree;
     if (Status status = makeTree(_source.get(), overlap, tree); !status.ok())
         return reported(std::move(status));
     _brickSize = brickSize;
     _overlap = overlap;
+    _partialBricks = partial;
     _tree = tree;
     if (valid()) _layout = *layout;
     forgetBricks();

@@ -74,6 +74,11 @@ public:
     /// frames.
     ReportedStatus setBrickSize(const osg::Vec3i& samples);
     osg::Vec3i getBrickSize() const;
+    /// What is done where the volume's size is no multiple of the bricks': by default the last brick
+    /// of an axis is smaller. With TRUNCATE less than all of the volume is drawn. Of no effect on
+    /// paged voxels. Refused and to be called as setBrickSize().
+    ReportedStatus setPartialBricks(core::PartialBricks partial);
+    core::PartialBricks getPartialBricks() const { return _partialBricks; }
     /// Samples shared by neighbours: 1 for linear filtering, 3 for cubic.
     ReportedStatus setOverlap(int samples);
     int getOverlap() const { return _overlap; }
@@ -101,6 +106,8 @@ public:
     /// Lowest and highest value of all that a page stands for, where the source knows them. Thread
     /// safe.
     std::optional<std::pair<double, double>> getPageRange(std::int64_t page, int step = 0) const;
+    std::optional<std::pair<double, double>> getPageRange(const core::TreeBrick& page,
+                                                          int step = 0) const;
 
     /// Bound on the bricks that are kept: 32 MiB.
     static constexpr std::size_t CACHE_BYTES = std::size_t(32) << 20;
@@ -155,7 +162,8 @@ private:
     struct Brick; // range and modified count of one brick
     using BrickPtr = std::shared_ptr<Brick>;
 
-    ReportedStatus rebuildLayout(const glm::ivec3& brickSize, int overlap);
+    ReportedStatus rebuildLayout(const glm::ivec3& brickSize, int overlap,
+                                 core::PartialBricks partial);
     void forgetBricks();
     BrickPtr findBrick(std::int64_t brick) const;
     Status makeTree(const VoxelSource* source, int overlap, core::BrickTree& tree) const;
@@ -170,6 +178,7 @@ private:
     osg::ref_ptr<VoxelSource> _source;
     VoxelSource::Description _description;
     glm::ivec3 _brickSize{256};
+    core::PartialBricks _partialBricks = core::PartialBricks::SHRINK_TO_FIT;
     int _overlap = 1;
     core::BrickLayout _layout;
     core::BrickTree _tree;

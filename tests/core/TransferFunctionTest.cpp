@@ -31,7 +31,7 @@ TEST(TransferFunction, TheLaterPointOfAJumpHoldsFromThere)
     EXPECT_FALSE(TransferFunction().hasJumps());
 }
 
-TEST(TransferFunction, MaximumOpacityIsExact)
+TEST(TransferFunction, ExtremeOpacitiesAreExact)
 {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -44,18 +44,23 @@ TEST(TransferFunction, MaximumOpacityIsExact)
         const TransferFunction f = *TransferFunction::create(points);
         const double low = 4.0 * uniform(random) - 0.5, high = low + 2.0 * uniform(random);
         const double maximum = f.maximumOpacity(low, high);
-        double sampled = 0.0;
-        for (int i = 0; i <= 1000; ++i)
-            sampled = std::max(sampled, f.evaluate(low + (high - low) * i / 1000).a);
-        EXPECT_GE(maximum, sampled - 1e-15);
+        const double minimum = f.minimumOpacity(low, high);
+        for (int i = 0; i <= 1000; ++i) {
+            const double sampled = f.evaluate(low + (high - low) * i / 1000).a;
+            EXPECT_GE(maximum, sampled - 1e-15);
+            EXPECT_LE(minimum, sampled + 1e-15);
+        }
         // Attained: at an end, or at a point inside.
-        bool attained = maximum == f.evaluate(low).a || maximum == f.evaluate(high).a;
-        for (const Point& p : points)
-            attained = attained || (p.value >= low && p.value <= high && p.color.a == maximum);
-        EXPECT_TRUE(attained);
+        for (const double extreme : {maximum, minimum}) {
+            bool attained = extreme == f.evaluate(low).a || extreme == f.evaluate(high).a;
+            for (const Point& p : points)
+                attained = attained || (p.value >= low && p.value <= high && p.color.a == extreme);
+            EXPECT_TRUE(attained);
+        }
     }
     EXPECT_EQ(0.0, TransferFunction().maximumOpacity(1.0, 0.0));
     EXPECT_EQ(0.0, TransferFunction().maximumOpacity(NAN, 1.0));
+    EXPECT_EQ(0.0, TransferFunction().minimumOpacity(1.0, 0.0));
 }
 
 TEST(TransferFunction, MapsValues)

@@ -71,15 +71,27 @@ glm::dvec4 TransferFunction::evaluate(double value) const
     return (1.0 - t) * a.color + t * after->color;
 }
 
-double TransferFunction::maximumOpacity(double low, double high) const
+// Piecewise linear: attained at an end, or at a point between.
+template <class Choose>
+double TransferFunction::extremeOpacity(double low, double high, const Choose& choose) const
 {
     if (!(low <= high)) return 0.0;
-    double maximum = std::max(evaluate(low).a, evaluate(high).a);
+    double extreme = choose(evaluate(low).a, evaluate(high).a);
     const auto byValue = [](const Point& p, double v) { return p.value < v; };
     for (auto p = std::lower_bound(_points.begin(), _points.end(), low, byValue);
          p != _points.end() && p->value <= high; ++p)
-        maximum = std::max(maximum, p->color.a);
-    return maximum;
+        extreme = choose(extreme, p->color.a);
+    return extreme;
+}
+
+double TransferFunction::maximumOpacity(double low, double high) const
+{
+    return extremeOpacity(low, high, [](double a, double b) { return std::max(a, b); });
+}
+
+double TransferFunction::minimumOpacity(double low, double high) const
+{
+    return extremeOpacity(low, high, [](double a, double b) { return std::min(a, b); });
 }
 
 bool TransferFunction::hasJumps() const

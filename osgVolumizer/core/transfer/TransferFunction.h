@@ -35,6 +35,8 @@ public:
     glm::dvec4 evaluate(double value) const;
     /// Largest opacity over the closed interval [low, high]; exact.
     double maximumOpacity(double low, double high) const;
+    /// Smallest likewise; 0 where there is no interval.
+    double minimumOpacity(double low, double high) const;
     /// Whether some value is taken by two points of different colour.
     bool hasJumps() const;
     /// Values mapped by value -> scale * value + offset, scale > 0.
@@ -47,6 +49,9 @@ public:
                                               bool texelCenters) const;
 
 private:
+    template <class Choose>
+    double extremeOpacity(double low, double high, const Choose& choose) const;
+
     std::vector<Point> _points;
 };
 
