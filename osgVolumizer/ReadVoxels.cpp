@@ -143,6 +143,7 @@ Status apply(Voxels& voxels, const io::VoxelOptions& options)
         status = voxels.setBrickSize({brick.x, brick.y, brick.z});
     }
     if (status.ok() && options.overlap) status = voxels.setOverlap(*options.overlap);
+    if (status.ok() && options.partial) status = voxels.setPartialBricks(*options.partial);
     return status;
 }
 

@@ -30,7 +30,8 @@ using Progress = std::function<void(double fraction)>;
 /// channel.
 ///
 /// The option string of `options` holds, separated by blanks and all optional:
-///   spacing=x,y,z  origin=x,y,z  range=low,high  brick=n | brick=x,y,z  overlap=n  series=on | off
+///   spacing=x,y,z  origin=x,y,z  range=low,high  brick=n | brick=x,y,z  overlap=n
+///   partial=shrink_to_fit | truncate | average_up  series=on | off
 /// Others are left alone: they may be readVolume()'s, or another loader's. The result refers to the
 /// file by the name and options given here.
 ///

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 namespace osgVolumizer {
 namespace io {
@@ -75,6 +76,16 @@ bool setOverlap(VoxelOptions& o, const std::string& text)
     return true;
 }
 
+constexpr const char* PARTIAL_NAMES[] = {"shrink_to_fit", "truncate", "average_up"};
+
+bool setPartial(VoxelOptions& o, const std::string& text)
+{
+    const auto name = std::find(std::begin(PARTIAL_NAMES), std::end(PARTIAL_NAMES), text);
+    if (name == std::end(PARTIAL_NAMES)) return false;
+    o.partial = static_cast<core::PartialBricks>(name - std::begin(PARTIAL_NAMES));
+    return true;
+}
+
 bool setSeries(VoxelOptions& o, const std::string& text)
 {
     if (text == "on" || text == "off") o.series = text == "on";
@@ -134,6 +145,10 @@ const std::vector<Row>& rows()
         {"overlap", "a number of samples from 0 to 1024", "n",
          "samples that bricks share at least; more where light or cubic interpolation need it",
          setOverlap},
+        {"partial", "shrink_to_fit, truncate or average_up", "shrink_to_fit, truncate, average_up",
+         "where the size is no multiple of the bricks': the last one is smaller, left out, or "
+         "moved back",
+         setPartial},
         {"series", "on or off", "on, off",
          "files of a folder or a pattern are volumes, one time step each, and not slices",
          setSeries},
@@ -186,6 +201,7 @@ std::string VoxelOptions::voxelText() const
     if (range) add("range", core::formatNumber(range->x) + "," + core::formatNumber(range->y));
     if (brick) add("brick", core::formatTriple(*brick));
     if (overlap) add("overlap", std::to_string(*overlap));
+    if (partial) add("partial", PARTIAL_NAMES[static_cast<int>(*partial)]);
     if (series) add("series", *series ? "on" : "off");
     return text;
 }

@@ -2,6 +2,7 @@
 
 #include "../AppearanceProperties.h"
 #include "../ReadVolume.h"
+#include "../core/voxels/BrickLayout.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
@@ -24,10 +25,11 @@ struct VoxelOptions
     std::optional<glm::dvec2> range;   ///< data values, low < high
     std::optional<glm::ivec3> brick;   ///< samples, each >= 2
     std::optional<int> overlap;        ///< samples
-    std::optional<bool> series;        ///< the files are time steps, not slices
-    std::optional<std::string> table;  ///< file name
-    std::optional<glm::dvec3> ramp;    ///< centre and width, fractions of the range; opacity
-    std::optional<glm::dmat3> axes;    ///< directions of the voxel axes, a column each
+    std::optional<core::PartialBricks> partial;
+    std::optional<bool> series;       ///< the files are time steps, not slices
+    std::optional<std::string> table; ///< file name
+    std::optional<glm::dvec3> ramp;   ///< centre and width, fractions of the range; opacity
+    std::optional<glm::dmat3> axes;   ///< directions of the voxel axes, a column each
     std::vector<std::pair<const AppearanceProperty*, AppearanceProperty::Values>> properties;
     std::vector<std::string> foreign; ///< names of options that are none of these
 

@@ -130,6 +130,16 @@ Status readBrickSizes(const Record& record, Voxels& voxels)
     return status.ok() ? voxels.setOverlap(overlap) : status;
 }
 
+// Since version 5, and only where they are not smaller than the others.
+Status readPartialBricks(const Record& record, Voxels& voxels)
+{
+    int partial = 0;
+    if (!record.has("PartialBricks")) return Status();
+    const Status status = record.getInteger("PartialBricks", 0, 2, partial);
+    return status.ok() ? voxels.setPartialBricks(static_cast<core::PartialBricks>(partial))
+                       : status;
+}
+
 Status readSpacing(const Record& record, Voxels& voxels)
 {
     Field::Doubles values;
@@ -167,8 +177,8 @@ Status applyBricks(Record& record, const osgDB::Options* options, Voxels& voxels
     Status status;
     if (record.has("FileName")) status = readFile(record, options, voxels);
     if (!status.ok()) return status;
-    for (const auto& read :
-         {readBrickSizes, readSpacing, readOrigin, readRange, readTextureBudget}) {
+    for (const auto& read : {readBrickSizes, readPartialBricks, readSpacing, readOrigin, readRange,
+                             readTextureBudget}) {
         const Status set = read(record, voxels);
         if (status.ok()) status = set;
     }
@@ -185,6 +195,8 @@ void fillBricks(const Voxels& voxels, Record& record, const osgDB::OutputStream&
     }
     record.add("BrickSize", Field::Integers{size.x(), size.y(), size.z()});
     record.add("Overlap", Field::Integers{voxels.getOverlap()});
+    if (voxels.getPartialBricks() != core::PartialBricks::SHRINK_TO_FIT)
+        record.add("PartialBricks", Field::Integers{static_cast<int>(voxels.getPartialBricks())});
     record.add("Spacing", Field::Doubles{spacing.x(), spacing.y(), spacing.z()});
     record.add("Origin", Field::Doubles{origin.x(), origin.y(), origin.z()});
     if (voxels.hasExplicitRange())

@@ -285,15 +285,16 @@ TEST_F(ReadVoxels, OptionsApplyAndAreKept)
     const std::string file = writeBytes("v.raw", std::string(64 * 4, 'x'));
     const auto voxels =
         readVoxels(file + ".4,4,4,float32",
-                   optionString("spacing=1,1,1.5 origin=-4,0.5,3 range=-1,2.5 brick=3 unit=2 "
-                                "table=none.lut")
+                   optionString("spacing=1,1,1.5 origin=-4,0.5,3 range=-1,2.5 brick=3 "
+                                "partial=average_up unit=2 table=none.lut")
                        .get());
     ASSERT_TRUE(voxels.ok()) << voxels.status.text;
     EXPECT_EQ(osg::Vec3d(1, 1, 1.5), (*voxels)->getSpacing());
     EXPECT_EQ(osg::Vec3d(-4, 0.5, 3), (*voxels)->getOrigin());
     EXPECT_EQ(osg::Vec2d(-1, 2.5), (*voxels)->getRange());
     EXPECT_EQ(8, (*voxels)->getLayout().brickCount());
-    EXPECT_EQ("spacing=1,1,1.5 origin=-4,0.5,3 range=-1,2.5 brick=3,3,3",
+    EXPECT_EQ((*voxels)->getPartialBricks(), core::PartialBricks::AVERAGE_UP);
+    EXPECT_EQ("spacing=1,1,1.5 origin=-4,0.5,3 range=-1,2.5 brick=3,3,3 partial=average_up",
               (*voxels)->getFileOptions());
     const auto again =
         readVoxels((*voxels)->getFileName(), optionString((*voxels)->getFileOptions()).get());

@@ -232,6 +232,7 @@ TEST_P(SerializerTest, SeriesAreKeptWithHowTheyArePlayed)
     ASSERT_TRUE(a->setTimeRate(-12.5));
     a->setTimeBlending(true);
     ASSERT_TRUE(a->getVoxels()->setTextureBudget(3 << 20));
+    ASSERT_TRUE(a->getVoxels()->setPartialBricks(core::PartialBricks::AVERAGE_UP));
     const auto b = roundTrip(*a);
     ASSERT_TRUE(b && b->getVoxels()) << errors();
     EXPECT_EQ(b->getTimeStep(), 1.0 / 3.0);
@@ -239,6 +240,7 @@ TEST_P(SerializerTest, SeriesAreKeptWithHowTheyArePlayed)
     EXPECT_TRUE(b->getTimeBlending());
     EXPECT_EQ(b->getVoxels()->getStepCount(), 3);
     EXPECT_EQ(b->getVoxels()->getTextureBudget(), 3 << 20);
+    EXPECT_EQ(b->getVoxels()->getPartialBricks(), core::PartialBricks::AVERAGE_UP);
     EXPECT_TRUE(errors().empty()) << errors();
 }
 

@@ -116,6 +116,39 @@ TEST_P(Bricks, UnevenOnesAgreeWithTheOracle)
     }
 }
 
+TEST_P(Bricks, PartialOnesShowAllOrWhatFills)
+{
+    const RenderOptions options = view({40, -30, 30}, {12, 12, 6}, 45.0);
+    const auto picture = [&](const glm::ivec3& size, core::PartialBricks partial) {
+        // The corner of one volume, whatever its size.
+        const osg::ref_ptr<Voxels> voxels = makeVoxels(size, bumps);
+        EXPECT_TRUE(voxels->setBrickSize({9, 7, 11}));
+        EXPECT_TRUE(voxels->setPartialBricks(partial));
+        TwinVolume twin = makeTwin(voxels, smoothPoints(0.05), GetParam());
+        twin.setPeriod(0.25);
+        support::filterExactly(*twin.node);
+        return support::renderScene(twin.node, options);
+    };
+    using core::PartialBricks;
+    const glm::ivec3 size(20, 25, 15);
+    const FloatImage all = picture(size, PartialBricks::SHRINK_TO_FIT);
+    EXPECT_GT(support::coveredPixels(all, 0.3f).count(), 500u);
+    EXPECT_LT(compare(picture(size, PartialBricks::AVERAGE_UP), all).maximum, 1e-4);
+    const FloatImage less = picture(size, PartialBricks::TRUNCATE);
+    EXPECT_GT(compare(less, all).maximum, 0.1);
+    // Of x 17 samples fill two bricks, of y all do, of z 11 fill one.
+    const osg::ref_ptr<Voxels> voxels = makeVoxels(size, bumps);
+    ASSERT_TRUE(voxels->setBrickSize({9, 7, 11}));
+    TwinVolume twin = makeTwin(voxels, smoothPoints(0.05), GetParam());
+    twin.setPeriod(0.25);
+    support::filterExactly(*twin.node);
+    twin.node->removeChildren(0, twin.node->getNumChildren());
+    twin.node->addChild(VolumeGeometry::createBox(osg::BoundingBoxd(0, 0, 0, 16, 24, 10)));
+    EXPECT_LT(compare(less, support::renderScene(twin.node, options)).rmse, 1e-3);
+    EXPECT_FALSE(voxels->setPartialBricks(static_cast<PartialBricks>(7)));
+    EXPECT_EQ(voxels->getPartialBricks(), PartialBricks::SHRINK_TO_FIT);
+}
+
 INSTANTIATE_TEST_SUITE_P(Techniques, Bricks,
                          ::testing::Values(VolumeAppearance::SLABS, VolumeAppearance::SLICES),
                          techniqueName);

@@ -2,6 +2,8 @@
 
 #include "Volumes.h"
 
+#include <osgVolumizer/BrickParameters.h>
+#include <osgVolumizer/Paging.h>
 #include <osgVolumizer/render/context/ContextLimits.h>
 #include <osgVolumizer/render/textures/BrickResidency.h>
 #include <osgVolumizer/render/textures/DrawnBrick.h>
@@ -104,6 +106,51 @@ protected:
 };
 
 using Numbers = std::vector<std::int64_t>;
+
+TEST_F(Residency, BestBricksFitTheContextAndTheBudget)
+{
+    osg::State& state = stateOf(*_renderer);
+    PagingBudget budget = defaultPagingBudget();
+    budget.textureBytes = std::int64_t(1) << 30;
+    ASSERT_TRUE(setPagingBudget(budget));
+    const auto ofSize = [](const glm::ivec3& size, VoxelType type) {
+        osg::ref_ptr<MemoryVoxelSource> source = new MemoryVoxelSource;
+        VoxelSource::Description description;
+        description.size = size;
+        description.type = type;
+        static double none = 0.0; // nothing is read
+        source->setExternal(description, &none);
+        return osg::ref_ptr<Voxels>(new Voxels(source));
+    };
+    const auto large = bestBrickParameters(state, *ofSize({1024, 1024, 1024}, VoxelType::UINT8));
+    ASSERT_TRUE(large.ok()) << large.status.text;
+    EXPECT_EQ(large->brickSize, osg::Vec3i(256, 256, 256));
+    EXPECT_EQ(large->internalFormat, GLenum(GL_R8)); // too large for floats anywhere
+    EXPECT_EQ(large->format, GLenum(GL_RED));
+    EXPECT_EQ(large->dataType, GLenum(GL_UNSIGNED_BYTE));
+    EXPECT_EQ(large->brickBytes, 1 << 24);
+    EXPECT_EQ(large->brickCount, 64);
+    // An eighth of the budget is the bound.
+    budget.textureBytes = std::int64_t(8) << 20;
+    ASSERT_TRUE(setPagingBudget(budget));
+    const auto small = bestBrickParameters(state, *ofSize({1024, 1024, 700}, VoxelType::UINT16));
+    ASSERT_TRUE(small.ok());
+    EXPECT_EQ(small->brickSize, osg::Vec3i(64, 64, 64));
+    EXPECT_EQ(small->brickBytes, 1 << 19);
+    EXPECT_EQ(small->brickCount, 16);
+    const auto flat = bestBrickParameters(state, *ofSize({512, 512, 1}, VoxelType::UINT16));
+    ASSERT_TRUE(flat.ok());
+    EXPECT_TRUE(ofSize({512, 512, 1}, VoxelType::UINT16)->setBrickSize(flat->brickSize));
+    // As much as llvmpipe filters best as floats is held so.
+    const osg::ref_ptr<Voxels> bytes = ofSize({64, 64, 64}, VoxelType::UINT8);
+    const auto floats = bestBrickParameters(state, *bytes);
+    ASSERT_TRUE(floats.ok());
+    EXPECT_EQ(floats->internalFormat, GLenum(_limits.filtersFloatsBest ? GL_R32F : GL_R8));
+    EXPECT_EQ(floats->brickBytes, (_limits.filtersFloatsBest ? 4 : 1) << 18);
+    EXPECT_EQ(bestBrickParameters(state, *osg::ref_ptr<Voxels>(new Voxels)).status.code,
+              ErrorCode::VALUE_INVALID);
+    setPagingBudget(defaultPagingBudget());
+}
 
 TEST_F(Residency, EverythingStaysWithoutABudget)
 {

@@ -3,7 +3,7 @@
 #include "../draw/RayFunctions.h"
 #include "../textures/BrickResidency.h"
 #include "BrickJoining.h"
-#include "PageSelection.h"
+#include "SelectPages.h"
 
 #include <osgUtil/CullVisitor>
 

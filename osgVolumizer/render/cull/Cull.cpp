@@ -160,14 +160,16 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     const VolumeAppearance* appearance = nearestAppearance(visitor.getNodePath());
     if (!appearance) return;
     std::unique_ptr<VolumeInstance> volume = makeInstance(geometry, *appearance, visitor);
-    if (!volume || !select(*volume, visitor)) return;
-    if (visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR &&
-        !visitor.updateCalculatedNearFar(*visitor.getModelViewMatrix(), geometry.getBoundingBox()))
-        return;
+    if (!volume) return;
     osg::StateSet* own = geometry.getStateSet();
     if (own) visitor.pushStateSet(own);
     volume->above = stateAbove(visitor.getCurrentStateGraph());
-    registerVolume(std::move(volume), visitor);
+    const auto isInView = [&] {
+        return visitor.getComputeNearFarMode() == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR ||
+               visitor.updateCalculatedNearFar(*visitor.getModelViewMatrix(),
+                                               geometry.getBoundingBox());
+    };
+    if (select(*volume, visitor) && isInView()) registerVolume(std::move(volume), visitor);
     if (own) visitor.popStateSet();
 }
 

@@ -5,19 +5,16 @@
 #include "../textures/BrickResidency.h"
 #include "../volume/PixelFootprint.h"
 #include "BrickSelection.h"
+#include "CoveredPages.h"
 
 #include "../../Paging.h"
 #include "../../core/sampling/ViewHelpers.h"
-#include "../../core/voxels/VoxelData.h"
 
 #include <osgUtil/CullVisitor>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <optional>
 #include <queue>
 
 namespace osgVolumizer {
@@ -31,189 +28,152 @@ constexpr double SHARE_OF_A_FRAME = 0.4;
 // Samples that are no further apart than so many pixels are fine enough.
 constexpr double FINE_ENOUGH = 1.0;
 
-class PageSelection
+} // namespace
+
+PageSelection::PageSelection(VolumeInstance& volume, const Voxels& voxels, const TimeSteps& steps,
+                             const PageView& view, bool skipping,
+                             const std::shared_ptr<Pages>& pages, osgUtil::CullVisitor& visitor)
+    : _volume(volume), _voxels(voxels), _tree(voxels.getTree()), _steps(steps), _skipping(skipping),
+      _visitor(visitor), _query(occupancyQuery(volume, voxels)), _pages(pages), _view(view),
+      _frame(frameOf(visitor)),
+      _contextId(visitor.getState() ? visitor.getState()->getContextID() : 0)
 {
-public:
-    PageSelection(VolumeInstance& volume, const Voxels& voxels, const TimeSteps& steps,
-                  bool skipping, const std::shared_ptr<Pages>& pages, osgUtil::CullVisitor& visitor)
-        : _volume(volume), _voxels(voxels), _tree(voxels.getTree()), _steps(steps),
-          _skipping(skipping), _visitor(visitor), _query(occupancyQuery(volume, voxels)),
-          _pages(pages), _toEye(toGlm(*volume.frameToEye)), _frame(frameOf(visitor)),
-          _contextId(visitor.getState() ? visitor.getState()->getContextID() : 0)
-    {
-        const core::View view{_toEye, toGlm(*visitor.getProjectionMatrix())};
-        const Result<glm::dvec4> eye = core::eyePosition(view);
-        _eye = eye.ok() ? *eye : glm::dvec4(0.0, 0.0, 1.0, 0.0);
-        if (volume.look->features.slab && volume.prepared->voxelFrame) {
-            _toClip = *volume.frameToEye * *visitor.getProjectionMatrix();
-            _known = pages->lastTest(volume.viewId, _frame);
-            _hasOpaque = pages->hadOpaque(volume.viewId);
-        }
-        const glm::dmat2x3 edges = pixelEdges(_toEye, 1.0, visitor);
-        _voxelsPerPixel = std::min(glm::length(edges[0]), glm::length(edges[1]));
+    const glm::dmat4 projection = toGlm(*visitor.getProjectionMatrix());
+    const Result<glm::dvec4> eye = core::eyePosition({view.toEye, projection});
+    _eye = eye.ok() ? *eye : glm::dvec4(0.0, 0.0, 1.0, 0.0);
+    if (volume.look->features.slab && volume.prepared->voxelFrame && !view.frustum) {
+        _toClip = *volume.frameToEye * *visitor.getProjectionMatrix();
+        _known = pages->lastTest(volume.viewId, _frame);
+        _hasOpaque = pages->hadOpaque(volume.viewId);
     }
+    const glm::dmat2x3 edges = pixelEdges(view.toEye, 1.0, visitor);
+    _voxelsPerPixel = std::min(glm::length(edges[0]), glm::length(edges[1]));
+}
 
-    /// Chooses pages, looks what there is of them, and what of it can be uploaded in this frame.
-    /// Those that are only read ahead may be let go of for all others.
-    enum Purpose
-    {
-        TO_DRAW,
-        INSTEAD, ///< of steps that are not there yet: nothing more is uploaded
-        AHEAD
+void PageSelection::choose(Purpose purpose)
+{
+    findCovered();
+    for (const std::int64_t root : _tree.roots(_eye))
+        add(root, -1);
+    _rootCount = _nodes.size();
+    if (_volume.prepared->voxelFrame) refine();
+    for (Node& node : _nodes)
+        look(node, purpose);
+    if (purpose == TO_DRAW) chooseUploads();
+    passUp();
+    bool anyHidden = false;
+    for (const Node& node : _nodes) {
+        anyHidden = anyHidden || (node.hidden && !node.covered);
+        if (!node.split && !node.hidden) _missing += !node.available || node.withheld;
+        _failed += node.state == Pages::FAILED;
+    }
+    // What was hidden from elsewhere need not be from here.
+    if (anyHidden && (!_known->isExact() || differs(_known->toClip(), _toClip))) ++_missing;
+}
+
+void PageSelection::draw()
+{
+    _volume.steps = _steps;
+    _volume.emptyBricks += _empty;
+    if (_volume.look->features.slab && _volume.prepared->voxelFrame) {
+        _test = std::make_shared<VisibilityTest>(_frame, _toClip, _volume.rayDistance == 1.0);
+        _pages->addTest(_volume.viewId, _test);
+    }
+    for (std::size_t i = 0; i < _rootCount; ++i)
+        draw(i, nullptr);
+    _volume.sorted = true;
+}
+
+std::int64_t PageSelection::textureBytes(const Node& node) const
+{
+    return core::sampleCount(node.uniform ? glm::ivec3(1) : node.brick.samples.size()) *
+           texelFormat(_voxels, _volume.look->features.gradientTexture).texelBytes();
+}
+
+// What reading takes for a while: samples, and texels where those are something else.
+std::int64_t PageSelection::memoryBytes(const Node& node) const
+{
+    const std::int64_t samples =
+        core::voxelBytes(node.brick.samples.size(), _voxels.getType(), _voxels.getComponents());
+    const bool same =
+        texelFormat(_voxels, _volume.look->features.gradientTexture).type == _voxels.getType() &&
+        !_volume.look->features.gradientTexture;
+    return same ? samples : samples + textureBytes(node);
+}
+
+// Whether opaque pages hide what lies behind them, and their ranges say of all of them what they
+// show: floats may be none, and then show nothing.
+bool PageSelection::canCover() const
+{
+    const ProgramFeatures& features = _volume.look->features;
+    const VoxelType type = _voxels.getType();
+    const bool integers =
+        type != VoxelType::HALF && type != VoxelType::FLOAT32 && type != VoxelType::FLOAT64;
+    const osg::Viewport* viewport = _visitor.getViewport();
+    return features.slab && _volume.prepared->voxelFrame && features.planeCount == 0 &&
+           features.rayFunction == VolumeAppearance::COMPOSITE && _voxels.getComponents() == 1 &&
+           integers && _volume.above.isUsual() && viewport && viewport->width() >= 1.0 &&
+           viewport->height() >= 1.0;
+}
+
+void PageSelection::findCovered()
+{
+    if (!canCover()) return;
+    const OpaqueDepth opaqueDepth(*_volume.look, _voxels.getRange());
+    if (opaqueDepth.least() > _tree.step()) return;
+    const glm::dmat4 toClip =
+        _volume.above.toUsualClip * toGlm(*_visitor.getProjectionMatrix()) * _view.toEye;
+    const osg::Viewport& viewport = *_visitor.getViewport();
+    const core::CoverMask mask(toClip, {int(viewport.width()), int(viewport.height())});
+    const auto describe = [&](std::int64_t index) -> std::optional<CoveredPages::Page> {
+        const std::optional<Node> node = make(index);
+        if (!node || node->box.empty()) return std::nullopt;
+        std::optional<double> depth;
+        if (!node->range.empty()) depth = opaqueDepth.of(node->range);
+        return CoveredPages::Page{node->brick, node->box, depth, isTooCoarse(*node)};
     };
-    void choose(Purpose purpose)
-    {
-        for (const std::int64_t root : _tree.roots(_eye))
-            add(root, -1);
-        _rootCount = _nodes.size();
-        if (_volume.prepared->voxelFrame) refine();
-        for (Node& node : _nodes)
-            look(node, purpose);
-        if (purpose == TO_DRAW) chooseUploads();
-        passUp();
-        bool anyHidden = false;
-        for (const Node& node : _nodes) {
-            anyHidden = anyHidden || node.hidden;
-            if (!node.split && !node.hidden) _missing += !node.available || node.withheld;
-            _failed += node.state == Pages::FAILED;
-        }
-        // What was hidden from elsewhere need not be from here.
-        if (anyHidden && (!_known->isExact() || differs(_known->toClip(), _toClip))) ++_missing;
-    }
-    /// Whether the picture is the final one.
-    bool isComplete() const { return _missing == 0; }
-    bool hasFailed() const { return _failed > 0; }
-    std::int64_t missing() const { return _missing; }
+    _covered = CoveredPages(_tree, _eye, mask, describe).find();
+}
 
-    void draw()
-    {
-        _volume.steps = _steps;
-        _volume.emptyBricks += _empty;
-        if (_volume.look->features.slab && _volume.prepared->voxelFrame) {
-            _test = std::make_shared<VisibilityTest>(_frame, _toClip, _volume.rayDistance == 1.0);
-            _pages->addTest(_volume.viewId, _test);
-        }
-        for (std::size_t i = 0; i < _rootCount; ++i)
-            draw(i, nullptr);
-        _volume.sorted = true;
+// None of what is outside the view. What shows nothing has an empty box.
+std::optional<PageSelection::Node> PageSelection::make(std::int64_t index)
+{
+    Node node;
+    node.index = index;
+    node.brick = _tree.brick(index);
+    node.box = node.brick.clipBox;
+    if (_volume.prepared->voxelFrame) {
+        node.box = intersection(node.box, _volume.prepared->regionBox);
+        if (node.box.empty() || isOutside(node.box)) return std::nullopt;
+        const double w = clipW(_view.toEye, node.box, _visitor).x;
+        node.error = node.brick.spacing / (_voxelsPerPixel * w);
+        if (!(node.error >= 0.0)) node.error = std::numeric_limits<double>::max();
     }
-    /// What is to be uploaded in this frame although another selection is drawn.
-    std::vector<DrawnBrick> uploads() const;
-    /// Appends what is missing of the pages. \param lowered by which its priority is below that of
-    /// all that is to be drawn; 0 for that
-    void appendRequests(int lowered, std::vector<PageRequest>& requests) const;
-    /// Of all pages, once they are read.
-    std::int64_t memoryBytes() const;
-    void report(std::int64_t missing, std::int64_t waiting) const;
+    if (_voxels.getComponents() == 1 && isEmpty(node)) node.box = {};
+    return node;
+}
 
-private:
-    /// A page that may be drawn. The nodes of a parent's children follow each other.
-    struct Node
-    {
-        std::int64_t index = 0;
-        core::TreeBrick brick;
-        core::Box3d box; ///< voxel frame; of its clip box, what is in the region
-        /// Of each time step, the one value of all that it stands for, where all have one.
-        std::array<std::optional<double>, 2> values;
-        bool uniform = false;
-        double error = 0.0; ///< pixels between its samples, where it is nearest
-        float priority() const { return static_cast<float>(std::min(error, 1e30)); }
-        std::int64_t parent = -1;
-        std::size_t firstChild = 0, childCount = 0;
-        bool split = false; ///< its children are to be drawn instead
-        VisibilityTest::Answer answer = VisibilityTest::UNKNOWN;
-        bool hidden = false;   ///< by opaque geometry: neither split nor read
-        bool withheld = false; ///< likewise, until it is known whether what it lies in is hidden
-        bool isWithinVisible = false; ///< something that it lies in is visible, as far as is known
-        std::array<Pages::Page, 2> pages;   ///< of each time step
-        Pages::State state = Pages::ABSENT; ///< of what there is least of
-        bool available = false;             ///< it can be drawn in this frame
-        bool below = false;                 ///< it can, or something below it
-        bool missing = false;               ///< it, or something below it, has not been read
-        bool shows = false;                 ///< it, or something below it, is to be drawn
-    };
-
-    PageKeeper::Key keyOf(const Node& node, int step) const
-    {
-        return {node.index, _volume.look->features.gradientTexture, _steps.step(step)};
-    }
-    // Of a time step.
-    std::int64_t textureBytes(const Node& node) const
-    {
-        return core::sampleCount(node.uniform ? glm::ivec3(1) : node.brick.samples.size()) *
-               texelFormat(_voxels, _volume.look->features.gradientTexture).texelBytes();
-    }
-    // What reading takes for a while: samples, and texels where those are something else.
-    std::int64_t memoryBytes(const Node& node) const
-    {
-        const std::int64_t samples =
-            core::voxelBytes(node.brick.samples.size(), _voxels.getType(), _voxels.getComponents());
-        const bool same = texelFormat(_voxels, _volume.look->features.gradientTexture).type ==
-                              _voxels.getType() &&
-                          !_volume.look->features.gradientTexture;
-        return same ? samples : samples + textureBytes(node);
-    }
-
-    void add(std::int64_t index, std::int64_t parent);
-    void refine();
-    bool isEmpty(Node& node) const;
-    void look(Node& node, Purpose purpose);
-    void chooseUploads();
-    void passUp();
-    void draw(std::size_t number, const Node* coarser);
-    void findHidden(Node& node) const;
-    void append(const Node& node, const Node& place);
-    DrawnBrick drawnBrick(const Node& node, int step) const;
-    static bool isFinal(const Node& node);
-    std::shared_ptr<const BrickCells> cellsOf(const Node& node) const;
-    bool isCutAway(const Node& node) const;
-    bool cutToOccupied(const Node& node, SelectedBrick& brick);
-
-    VolumeInstance& _volume;
-    const Voxels& _voxels;
-    const core::BrickTree& _tree;
-    const TimeSteps _steps;
-    const bool _skipping;
-    osgUtil::CullVisitor& _visitor;
-    const OccupancyQuery _query;
-    const std::shared_ptr<Pages> _pages;
-    const glm::dmat4 _toEye;
-    const unsigned _frame, _contextId;
-    osg::Matrixd _toClip;                         ///< of slabs in the voxel frame, as what follows
-    std::shared_ptr<const VisibilityTest> _known; ///< of an earlier frame; or null
-    std::shared_ptr<VisibilityTest> _test;        ///< of this one
-    bool _hasOpaque = false;                      ///< as far as earlier frames know
-    glm::dvec4 _eye;
-    double _voxelsPerPixel = 0.0; ///< where clip w is 1
-    std::vector<Node> _nodes;     ///< parents before children
-    std::size_t _rootCount = 0;
-    std::int64_t _missing = 0, _failed = 0, _empty = 0;
-    bool _limited = false; ///< by the budget
-};
+bool PageSelection::isOutside(const core::Box3d& box)
+{
+    if (!_view.frustum)
+        return _visitor.isCulled(objectBounds(box, _volume.prepared->frameToObject));
+    return !_view.frustum->contains(objectBounds(box, glm::dmat4(1.0)));
+}
 
 // Leaves out what shows nothing.
 void PageSelection::add(std::int64_t index, std::int64_t parent)
 {
-    Node node;
-    node.index = index;
-    node.parent = parent;
-    node.brick = _tree.brick(index);
-    node.box = node.brick.clipBox;
-    const PreparedGeometry& prepared = *_volume.prepared;
-    if (prepared.voxelFrame) {
-        node.box = intersection(node.box, prepared.regionBox);
-        if (node.box.empty()) return;
-        if (_visitor.isCulled(objectBounds(node.box, prepared.frameToObject))) return;
-        const double w = clipW(_toEye, node.box, _visitor).x;
-        node.error = node.brick.spacing / (_voxelsPerPixel * w);
-        if (!(node.error >= 0.0)) node.error = std::numeric_limits<double>::max();
-    }
-    if (_voxels.getComponents() == 1 && isEmpty(node)) {
+    std::optional<Node> node = make(index);
+    if (!node) return;
+    if (node->box.empty()) {
         ++_empty;
         return;
     }
-    if (_known) findHidden(node);
-    _nodes.push_back(std::move(node));
+    node->parent = parent;
+    if (_known) findHidden(*node);
+    node->covered = _covered.count(index) > 0;
+    node->hidden = node->hidden || node->covered;
+    _nodes.push_back(std::move(*node));
 }
 
 // Of what lies in a page that is visible only the next finer level is asked for: it is drawn with
@@ -233,12 +193,13 @@ void PageSelection::findHidden(Node& node) const
 // has all values between theirs.
 bool PageSelection::isEmpty(Node& node) const
 {
-    core::ValueRange all;
+    core::ValueRange& all = node.range;
     node.uniform = true;
     for (int i = 0; i < _steps.count(); ++i) {
-        const auto range = _voxels.getPageRange(node.index, _steps.step(i));
+        const auto range = _voxels.getPageRange(node.brick, _steps.step(i));
         if (!range) {
             node.uniform = false;
+            all = {};
             return false;
         }
         all.expand({range->first, range->second});
@@ -261,9 +222,7 @@ void PageSelection::refine()
     const auto consider = [&](std::size_t i) {
         const Node& node = _nodes[i];
         if (!node.hidden) bytes += _steps.count() * textureBytes(node);
-        if (node.brick.level > 0 && node.error > FINE_ENOUGH && !node.uniform && !node.hidden &&
-            !node.withheld)
-            worst.emplace(node.error, i);
+        if (isTooCoarse(node) && !node.hidden && !node.withheld) worst.emplace(node.error, i);
     };
     for (std::size_t i = 0; i < _nodes.size(); ++i)
         consider(i);
@@ -436,6 +395,12 @@ std::vector<DrawnBrick> PageSelection::uploads() const
     return uploads;
 }
 
+// Whether finer pages would show more.
+bool PageSelection::isTooCoarse(const Node& node)
+{
+    return !isFinal(node) && !node.uniform;
+}
+
 // Whether a page is drawn by itself, as good as it will be.
 bool PageSelection::isFinal(const Node& node)
 {
@@ -490,7 +455,8 @@ void PageSelection::appendRequests(int lowered, std::vector<PageRequest>& reques
             const Pages::State state = node.pages[std::size_t(i)].state;
             if (state != Pages::ABSENT && state != Pages::FAILED) continue;
             if (node.hidden || node.withheld) continue;
-            const float priority = lowered == 0 ? node.priority() : static_cast<float>(-lowered);
+            const float own = node.priority();
+            const float priority = lowered == 0 ? own : own / (1.0f + own) - float(lowered) - 1.0f;
             requests.push_back({keyOf(node, i), priority, memoryBytes(node)});
         }
 }
@@ -503,13 +469,14 @@ std::int64_t PageSelection::memoryBytes() const
     return bytes;
 }
 
-void PageSelection::report(std::int64_t missing, std::int64_t waiting) const
+void PageSelection::report(std::int64_t missing, std::int64_t waiting, std::int64_t ahead) const
 {
     if (!collectingStats(_visitor.getCurrentCamera())) return;
     const std::pair<const char*, std::int64_t> values[] = {
         {"osgVolumizer pages wanted", static_cast<std::int64_t>(_nodes.size())},
         {"osgVolumizer pages missing", missing},
         {"osgVolumizer pages waited for", waiting},
+        {"osgVolumizer pages ahead", ahead},
         {"osgVolumizer pages failed", _failed},
         {"osgVolumizer pages hidden",
          std::count_if(_nodes.begin(), _nodes.end(), [](const Node& n) { return n.hidden; })},
@@ -519,91 +486,6 @@ void PageSelection::report(std::int64_t missing, std::int64_t waiting) const
     for (const auto& value : values)
         count(_visitor.getCurrentCamera(), _visitor.getFrameStamp(), value.first,
               static_cast<double>(value.second));
-}
-
-// What follows where time goes on, as far ahead as there is room for in half of the budget: one
-// step a frame, the next one once all of that has been read.
-void appendAhead(const VolumeInstance& volume, const TimeSteps& steps, std::int64_t bytesOfStep,
-                 const std::function<PageSelection(const TimeSteps&)>& selection, int& ahead,
-                 std::vector<PageRequest>& requests)
-{
-    constexpr int MOST = 3;
-    const std::int64_t room = getPagingBudget().memoryBytes / 2;
-    if (ahead > MOST || (ahead + 1) * bytesOfStep > room) ahead = 1;
-    if ((ahead + 1) * bytesOfStep > room) return;
-    const TimeSteps next = stepsAhead(*volume.appearance, steps, ahead);
-    const std::size_t before = requests.size();
-    if (!next.sameSteps(steps)) {
-        PageSelection pages = selection(next);
-        pages.choose(PageSelection::AHEAD);
-        pages.appendRequests(ahead, requests);
-    }
-    if (requests.size() == before) ++ahead;
-}
-
-// Tells a view how far its picture is, and a viewer that draws on demand to go on until it is
-// final. A request to draw once would be forgotten: it comes while a frame is drawn.
-void tell(const Voxels& voxels, std::int64_t missing, bool plays, std::uint64_t viewId,
-          Pages::Steps& known, Pages& pages, osgUtil::CullVisitor& visitor)
-{
-    const osg::Camera* camera = visitor.getCurrentCamera();
-    const bool changed = known.missing < 0 || (known.missing == 0) != (missing == 0);
-    osg::View* view = camera ? const_cast<osg::Camera*>(camera)->getView() : nullptr;
-    const bool goesOn = missing > 0 || plays, wentOn = known.goesOn.valid();
-    known.missing = missing;
-    known.goesOn = goesOn ? view : nullptr;
-    pages.setSteps(viewId, frameOf(visitor), known);
-    if (changed)
-        if (const PagingCallback callback = getPagingCallback())
-            callback({&voxels, camera, missing});
-    if (view && (goesOn || wentOn)) Pages::setContinuous(*view);
-}
-
-} // namespace
-
-void selectPages(VolumeInstance& volume, const Voxels& voxels, const ViewHooks& hooks,
-                 osgUtil::CullVisitor& visitor)
-{
-    if (!visitor.getProjectionMatrix()) return;
-    const std::shared_ptr<Pages> pages = BrickResidency::of(voxels)->pages(voxels);
-    const auto selection = [&](const TimeSteps& steps) {
-        return PageSelection(volume, voxels, steps, hooks.skipping, pages, visitor);
-    };
-    // Steps that were begun with are waited for, or where time goes on faster than they can be read
-    // none would ever be there.
-    Pages::Steps known = pages->stepsOf(volume.viewId);
-    const TimeSteps now = volume.steps;
-    const bool waits =
-        known.pending && known.pending->blended == now.blended && !known.pending->sameSteps(now);
-    const TimeSteps aim = waits ? *known.pending : now;
-    if (!known.shown || !known.shown->sameSteps(aim)) known.ahead = 1;
-    PageSelection wanted = selection(aim);
-    wanted.choose(PageSelection::TO_DRAW);
-    std::optional<PageSelection> instead;
-    const bool hasOthers = known.shown && !known.shown->sameSteps(aim);
-    if (!wanted.isComplete() && hasOthers && known.shown->blended == aim.blended) {
-        instead.emplace(selection(*known.shown));
-        instead->choose(PageSelection::INSTEAD);
-        if (!instead->isComplete()) instead.reset();
-    }
-    (instead ? *instead : wanted).draw();
-    // Where nothing is drawn, nothing can be uploaded with it.
-    if (instead && volume.bricks.empty()) {
-        instead.reset();
-        wanted.draw();
-    }
-    if (instead) volume.bricks.front().texels.uploads = wanted.uploads();
-    if (wanted.isComplete()) known.shown = aim;
-    known.pending.reset();
-    if (!wanted.isComplete() && !wanted.hasFailed()) known.pending = aim;
-    const std::int64_t missing = wanted.missing() + (aim.sameSteps(now) ? 0 : 1);
-    const bool plays = voxels.getStepCount() > 1 && volume.appearance->getTimeRate() != 0.0;
-    std::vector<PageRequest> requests;
-    wanted.appendRequests(0, requests);
-    if (plays) appendAhead(volume, aim, wanted.memoryBytes(), selection, known.ahead, requests);
-    tell(voxels, missing, plays, volume.viewId, known, *pages, visitor);
-    const std::int64_t waiting = pages->ask(volume.viewId, std::move(requests));
-    wanted.report(missing, waiting);
 }
 
 } // namespace render

@@ -72,7 +72,7 @@ Pages::~Pages()
     PageQueue::instance().released(bytesOf(_entries));
     osg::ref_ptr<osg::View> view;
     for (const auto& known : _views)
-        if (known.second.steps.goesOn.lock(view)) setContinuous(*view);
+        if (known.second.state.goesOn.lock(view)) setContinuous(*view);
 }
 
 // Of the texels in memory.
@@ -103,7 +103,7 @@ void Pages::begin(const Voxels& voxels)
         _reported = false;
         forgotten.swap(_entries);
         for (auto& view : _views)
-            view.second.steps = {};
+            view.second.state = {};
     }
     PageQueue::instance().released(bytesOf(forgotten));
 }
@@ -151,19 +151,19 @@ void Pages::provide(const Key& key, const Voxels& voxels, double value)
     keep(key, twin, content);
 }
 
-Pages::Steps Pages::stepsOf(std::uint64_t viewId) const
+Pages::ViewState Pages::stateOf(std::uint64_t viewId) const
 {
     std::lock_guard<std::mutex> lock(_mutex);
     const auto found = _views.find(viewId);
-    return found == _views.end() ? Steps() : found->second.steps;
+    return found == _views.end() ? ViewState() : found->second.state;
 }
 
-void Pages::setSteps(std::uint64_t viewId, unsigned frame, const Steps& steps)
+void Pages::setState(std::uint64_t viewId, unsigned frame, const ViewState& state)
 {
     std::lock_guard<std::mutex> lock(_mutex);
     View& view = _views[viewId];
     view.frame = std::max(view.frame, frame);
-    view.steps = steps;
+    view.state = state;
 }
 
 void Pages::addTest(std::uint64_t viewId, const std::shared_ptr<VisibilityTest>& test)
@@ -202,7 +202,7 @@ void Pages::setContinuous(osg::View& view)
     for (const auto& pages : Registry::instance().living()) {
         std::lock_guard<std::mutex> lock(pages->_mutex);
         for (const auto& known : pages->_views)
-            any = any || known.second.steps.goesOn == &view;
+            any = any || known.second.state.goesOn == &view;
     }
     viewer->requestContinuousUpdate(any);
 }

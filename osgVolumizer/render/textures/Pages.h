@@ -71,17 +71,18 @@ public:
     /// failed a short while ago, are left out. Returns how many are waited for.
     std::int64_t ask(std::uint64_t viewId, std::vector<PageRequest> requests);
 
-    /// The time steps of a view.
-    struct Steps
+    /// What is known of a view from its frame before.
+    struct ViewState
     {
         std::optional<TimeSteps> shown;      ///< the last that were there with all that was needed
         std::optional<TimeSteps> pending;    ///< those that are waited for
         int ahead = 1;                       ///< how far ahead is being read
         std::int64_t missing = -1;           ///< pages, as it was last told; -1: never
         osg::observer_ptr<osg::View> goesOn; ///< that was told to draw again and again; or null
+        std::optional<osg::Matrixd> toEye;   ///< from the volume's frame
     };
-    Steps stepsOf(std::uint64_t viewId) const;
-    void setSteps(std::uint64_t viewId, unsigned frame, const Steps& steps);
+    ViewState stateOf(std::uint64_t viewId) const;
+    void setState(std::uint64_t viewId, unsigned frame, const ViewState& state);
 
     /// What is found out in a frame of a view, of which the last few are kept.
     void addTest(std::uint64_t viewId, const std::shared_ptr<VisibilityTest>& test);
@@ -138,7 +139,7 @@ private:
     struct View
     {
         unsigned frame = 0; ///< the last one
-        Steps steps;
+        ViewState state;
         std::deque<std::shared_ptr<VisibilityTest>> tests; ///< newest first
     };
 

@@ -62,11 +62,15 @@ TexelFormat texelFormat(const Voxels& voxels, bool gradients)
     return gradients ? gradientFormat(format) : format;
 }
 
+std::int64_t floatTexelBytes(const TexelFormat& format)
+{
+    return format.isScalar() ? 4 : 16;
+}
+
 osg::ref_ptr<osg::Texture3D> makeVoxelTexture(const TexelFormat& format, const glm::ivec3& size,
                                               std::int64_t volumeTexels,
                                               const ContextLimits& limits)
 {
-    const std::int64_t floatBytes = format.isScalar() ? 4 : 16;
     osg::ref_ptr<osg::Texture3D> texture = new osg::Texture3D;
     texture->setResizeNonPowerOfTwoHint(false);
     texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
@@ -79,7 +83,7 @@ osg::ref_ptr<osg::Texture3D> makeVoxelTexture(const TexelFormat& format, const g
     texture->setSourceType(format.dataType);
     GLenum internalFormat = format.internalFormat;
     if (limits.filtersFloatsBest) {
-        if (volumeTexels <= FLOAT_BYTES / floatBytes)
+        if (volumeTexels <= FLOAT_BYTES / floatTexelBytes(format))
             internalFormat = format.isScalar() ? GLenum(GL_R32F) : GLenum(GL_RGBA32F_ARB);
         else
             texture->setWrap(osg::Texture::WRAP_R, osg::Texture::MIRROR);

@@ -29,6 +29,9 @@ struct TexelFormat
 /// `gradients`: central differences in red, green and blue, see gradientDecode(), and the value in
 /// alpha.
 TexelFormat texelFormat(const Voxels& voxels, bool gradients);
+/// Bytes of a texel of that many components as floats, as a context may have them: see
+/// ContextLimits::filtersFloatsBest.
+std::int64_t floatTexelBytes(const TexelFormat& format);
 /// Smallest value of the signed types that are moved up, which their texels are counted from; 0 for
 /// others.
 double lowestSigned(VoxelType type);
