@@ -53,6 +53,7 @@ PageSelection::PageSelection(VolumeInstance& volume, const Voxels& voxels, const
 void PageSelection::choose(Purpose purpose)
 {
     findCovered();
+    _nodes.reserve(1024);
     for (const std::int64_t root : _tree.roots(_eye))
         add(root, -1);
     _rootCount = _nodes.size();
