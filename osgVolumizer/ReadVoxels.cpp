@@ -72,7 +72,7 @@ Result<std::vector<std::string>> listSteps(const std::string& name, const osgDB:
     if (!std::filesystem::is_directory(path, unknown))
         return Status(ErrorCode::VALUE_INVALID,
                       "a series of time steps is a folder or a pattern such as name%03d.tif");
-    return io::listFolder(path);
+    return io::listFolder(path, true);
 }
 
 Result<io::Source> readSeries(const std::string& name, const osgDB::Options* options,
