@@ -45,12 +45,12 @@ int exponentOf(double factor)
 }
 
 // Each axis by the factor that is said of it, if that is a power of two and the size agrees.
-glm::ivec3 halvingsOf(const glm::ivec3& whole, const glm::ivec3& size, const glm::dvec3* factors)
+glm::ivec3 halvingsBy(const glm::ivec3& whole, const glm::ivec3& size, const glm::dvec3* factors)
 {
     glm::ivec3 halvings(-1);
     for (int axis = 0; axis < 3; ++axis) {
         if (!factors) {
-            halvings[axis] = hdf5::halvingsOf(whole[axis], size[axis]);
+            halvings[axis] = halvingsOf(whole[axis], size[axis]);
             continue;
         }
         const int n = exponentOf((*factors)[axis]);
@@ -76,7 +76,7 @@ Status addMipmaps(hid_t file, int setup, Layout& layout, std::vector<int>& numbe
         const Result<glm::ivec3> size = voxelSize(*cells, 0);
         if (!size.ok()) return size.status;
         const bool said = std::size_t(level) < factors.size();
-        const FileLevel made{*size, halvingsOf(layout.description.size, *size,
+        const FileLevel made{*size, halvingsBy(layout.description.size, *size,
                                                said ? &factors[std::size_t(level)] : nullptr)};
         if (made.halvings.x < 0 || made.halvings.y < 0 || made.halvings.z < 0) {
             layout.notices.push_back(levelNotice(level, *size));
