@@ -109,18 +109,11 @@ Status checkPieces(hid_t properties, std::size_t voxel, const std::string& path)
                 std::to_string(static_cast<std::int64_t>(MAXIMUM_PIECE_BYTES / (1 << 20)))};
 }
 
-// What H5Ovisit() walks over.
-struct Visit
-{
-    hid_t file;
-    std::vector<std::string> paths;
-};
-
-herr_t keepDataset(hid_t, const char* name, const H5O_info_t* info, void* data)
+herr_t keepDataset(hid_t, const char* name, const H5O_info_t* info, void* paths)
 {
     try {
         if (info->type == H5O_TYPE_DATASET)
-            static_cast<Visit*>(data)->paths.push_back(std::string("/") + name);
+            static_cast<std::vector<std::string>*>(paths)->push_back(std::string("/") + name);
         return 0;
     } catch (const std::exception&) {
         return -1;
@@ -170,11 +163,11 @@ Result<Dataset> inspect(hid_t file, const std::string& path)
 Result<std::vector<Dataset>> listDatasets(hid_t file)
 {
     const Session session;
-    Visit visit{file, {}};
-    if (H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, keepDataset, &visit) < 0)
+    std::vector<std::string> paths;
+    if (H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, keepDataset, &paths) < 0)
         return Status(ErrorCode::FILE_UNREADABLE, "its groups cannot be read" + session.reason());
     std::vector<Dataset> datasets;
-    for (const std::string& path : visit.paths) {
+    for (const std::string& path : paths) {
         const Handle id(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose);
         if (!id.ok()) continue;
         if (std::optional<Dataset> dataset = describe(id, path))

@@ -45,7 +45,7 @@ TEST(Packages, OfTheReadmeAreThoseOfTheScripts)
 TEST(Packages, AreNamedInNoScriptItself)
 {
     static const std::regex call("install_missing([^\n]*)");
-    static const std::regex variables("( \\$[A-Za-z_]*)+( \\|\\|.*)?");
+    static const std::regex variables("( \\$[A-Za-z_0-9]*)+( \\|\\|.*)?");
     for (const char* script :
          {"tests/run.sh", "tests/bench/chart.sh", "examples/demo.sh", "examples/pictures.sh"}) {
         const std::string text = textOf(source / script);
