@@ -21,6 +21,8 @@ HEADLESS_DEMO_PACKAGES="xvfb imagemagick"
 CHART_PACKAGES="libgtest-dev libgl1-mesa-dri openscenegraph xvfb xauth python3"
 # Readers of .vtk and .vtu files, and two of the chart's peers; all goes without it.
 VTK_PACKAGES="libvtk9-dev"
+# The reader of HDF5 files; all goes without it.
+HDF5_PACKAGES="libhdf5-dev"
 
 install_missing() {
     command -v dpkg-query >/dev/null || {

@@ -1,6 +1,7 @@
 #include "ReadVoxels.h"
 
 #include "VoxelSeries.h"
+#include "io/PluginFile.h"
 #include "io/PyramidSource.h"
 #include "io/VoxelFiles.h"
 #include "io/VoxelOptions.h"
@@ -43,8 +44,11 @@ Result<io::Source> readFiles(const Result<std::vector<std::string>>& paths,
 }
 
 // One file that was found. Raw files are found by readSource().
-Result<io::Source> readFile(const std::string& path, const Progress& progress)
+Result<io::Source> readFile(const std::string& path, const io::VoxelOptions& said,
+                            const Progress& progress)
 {
+    if (const io::PluginFormat* format = io::pluginFormatOf(path))
+        return io::readByPlugin(*format, path, said);
     if (io::PyramidSource::isPyramid(path)) return io::readPyramid(path);
     return io::readImage(path, progress);
 }
@@ -68,19 +72,19 @@ Result<std::vector<std::string>> listSteps(const std::string& name, const osgDB:
     if (!std::filesystem::is_directory(path, unknown))
         return Status(ErrorCode::VALUE_INVALID,
                       "a series of time steps is a folder or a pattern such as name%03d.tif");
-    return io::listFolder(path);
+    return io::listFolder(path, true);
 }
 
 Result<io::Source> readSeries(const std::string& name, const osgDB::Options* options,
-                              std::string& found)
+                              const io::VoxelOptions& said, std::string& found)
 {
     std::optional<io::RawName> raw;
     const Result<std::vector<std::string>> paths = listSteps(name, options, raw);
     if (!paths.ok()) return paths.status;
     found = inFolderOf(paths->front(), name);
-    const auto open = [paths = *paths, raw](int step) {
+    const auto open = [paths = *paths, raw, said](int step) {
         const std::string& path = paths[std::size_t(step)];
-        return raw ? io::readRaw(*raw, path, {}) : readFile(path, {});
+        return raw ? io::readRaw(*raw, path, {}) : readFile(path, said, {});
     };
     osg::ref_ptr<VoxelSeries> series = new VoxelSeries;
     const CallerReports quiet;
@@ -90,19 +94,20 @@ Result<io::Source> readSeries(const std::string& name, const osgDB::Options* opt
 }
 
 // Also finds the absolute name of the volume.
-Result<io::Source> readSource(std::string name, const osgDB::Options* options, bool series,
-                              const Progress& progress, std::string& found)
+Result<io::Source> readSource(std::string name, const osgDB::Options* options,
+                              const io::VoxelOptions& said, const Progress& progress,
+                              std::string& found)
 {
     while (name.size() > 1 && name.back() == '/')
         name.pop_back();
-    if (series) return readSeries(name, options, found);
+    if (said.series.value_or(false)) return readSeries(name, options, said, found);
     const std::string path = name.empty() ? name : osgDB::findDataFile(name, options);
     if (!path.empty()) {
         found = inFolderOf(path, name);
         std::error_code unknown; // OSG takes sockets for folders
         if (std::filesystem::is_directory(path, unknown))
             return readFiles(io::listFolder(path), progress);
-        Result<io::Source> source = readFile(path, progress);
+        Result<io::Source> source = readFile(path, said, progress);
         if (source.ok() && io::isSliceOfSeries(path))
             OSG_NOTICE << "osgVolumizer: " << path << " is one slice of a series; the name of its "
                        << "folder opens all that lie there" << std::endl;
@@ -170,8 +175,8 @@ Result<osg::ref_ptr<Voxels>> read(const std::string& name, const osgDB::Options*
         OSG_INFO << "osgVolumizer: " << name << ": option \"" << option
                  << "\" is none of a volume's, and left to others" << std::endl;
     std::string found;
-    Result<osg::ref_ptr<Voxels>> voxels = makeVoxels(
-        readSource(name, options, said->series.value_or(false), progress, found), *said, name);
+    Result<osg::ref_ptr<Voxels>> voxels =
+        makeVoxels(readSource(name, options, *said, progress, found), *said, name);
     if (!voxels.ok()) return voxels;
     (*voxels)->setFileName(name);
     (*voxels)->setFilePath(found);

@@ -19,9 +19,11 @@ using Progress = std::function<void(double fraction)>;
 /// - a folder of 2D images, in natural order (DICOM: along the patient), or a numbered pattern
 /// ("slice%03d.png", "slice####.png")
 ///   without gaps;
+/// - an HDF5 file (.h5, .hdf5, .he5, .ims), where the plugin for it was built: of Imaris or
+/// BigDataViewer with their levels and time steps, or a dataset of z,y,x or time,z,y,x;
 /// - a raw file as "name.raw.256,256,110,uint8[,headerBytes[,big|little]]".
-/// A raw file stays open and is read brick by brick, as bricks are asked for; all others are read
-/// into memory.
+/// Raw and HDF5 files stay open and are read brick by brick, as bricks are asked for; all others
+/// are read into memory.
 /// With series=on, a folder's files, or those of a pattern ("flow%03d.tif",
 /// "flow%03d.raw.64,64,64,float32"), are volumes of one size and type, one for each time step: see
 /// VoxelSeries, which opens each when it is shown.
@@ -32,12 +34,15 @@ using Progress = std::function<void(double fraction)>;
 /// The option string of `options` holds, separated by blanks and all optional:
 ///   spacing=x,y,z  origin=x,y,z  range=low,high  brick=n | brick=x,y,z  overlap=n
 ///   partial=shrink_to_fit | truncate | average_up  series=on | off
+///   dataset=/path  channel=n
 /// Others are left alone: they may be readVolume()'s, or another loader's. The result refers to the
 /// file by the name and options given here.
 ///
 /// Refused: FILE_NOT_FOUND; FILE_UNREADABLE (cut short, or no volume); SIZE_MISMATCH (a raw file of
-/// another length, unequal slices); VALUE_INVALID (option or raw format); TOO_LARGE (more than 2^36
-/// bytes, or than there is memory), found before anything is allocated.
+/// another length, unequal slices); VALUE_INVALID (option, raw format, or no such dataset);
+/// INDEX_OUT_OF_RANGE (no such channel); NOT_SUPPORTED (a format whose plugin was not built, or
+/// values that are no numbers); TOO_LARGE (more than 2^36 bytes, or than there is memory), found
+/// before anything is allocated.
 OSGVOLUMIZER_EXPORT Result<osg::ref_ptr<Voxels>> readVoxels(const std::string& name,
                                                             const osgDB::Options* options = nullptr,
                                                             const Progress& progress = {});

@@ -1,3 +1,4 @@
+#include "PluginFile.h"
 #include "VoxelFiles.h"
 
 #include "../core/Text.h"
@@ -166,16 +167,18 @@ bool naturalLess(const std::string& a, const std::string& b)
     return a < b; // equal but for zeros in front
 }
 
-Result<std::vector<std::string>> listFolder(const std::string& folder)
+Result<std::vector<std::string>> listFolder(const std::string& folder, bool volumes)
 {
     Result<std::vector<std::string>> names = filesOf(folder);
     if (!names.ok()) return names;
-    std::vector<std::string> images, bare;
+    std::vector<std::string> images, bare, others;
     for (const std::string& name : *names) {
         const std::string extension = fs::path(name).extension().string();
         if (extension.empty()) bare.push_back(name);
         if (extension.size() > 1 && isImageExtension(extension.substr(1))) images.push_back(name);
+        if (pluginFormatOf(name)) others.push_back(name);
     }
+    if (images.empty() && volumes) images = std::move(others);
     if (images.empty()) images = std::move(bare);
     if (images.empty())
         return Status(ErrorCode::FILE_NOT_FOUND, "folder " + folder + " has no images");

@@ -40,8 +40,8 @@ Result<Source> readDicom(const std::vector<std::string>& paths, const Progress& 
 
 /// The images of a folder in natural order ("slice2" before "slice10"): the files of the extensions
 /// that OpenImageIO knows, or, where there are none, those without an extension. Hidden files do
-/// not count.
-Result<std::vector<std::string>> listFolder(const std::string& folder);
+/// not count. `volumes`: where there are no images, the files of plugins (see io/PluginFile.h).
+Result<std::vector<std::string>> listFolder(const std::string& folder, bool volumes = false);
 
 /// True where a name holds "%d", "%03d" or "###".
 bool looksLikePattern(const std::string& name);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 
 namespace osgVolumizer {
 namespace io {
@@ -92,6 +93,24 @@ bool setSeries(VoxelOptions& o, const std::string& text)
     return text == "on" || text == "off";
 }
 
+bool setDataset(VoxelOptions& o, const std::string& text)
+{
+    // What no quotation marks can be put around could not be written again.
+    const bool writable =
+        text.find('"') == std::string::npos || text.find('\'') == std::string::npos;
+    if (text.empty() || !writable) return false;
+    o.dataset = text;
+    return true;
+}
+
+bool setChannel(VoxelOptions& o, const std::string& text)
+{
+    std::int64_t n = 0;
+    if (!core::parseInteger(text, n) || n < 0 || n > std::numeric_limits<int>::max()) return false;
+    o.channel = static_cast<int>(n);
+    return true;
+}
+
 bool setTable(VoxelOptions& o, const std::string& text)
 {
     if (!text.empty()) o.table = text;
@@ -152,6 +171,12 @@ const std::vector<Row>& rows()
         {"series", "on or off", "on, off",
          "files of a folder or a pattern are volumes, one time step each, and not slices",
          setSeries},
+        {"dataset", "a path", "/path",
+         "which dataset of an HDF5 file is the volume; the largest of z,y,x or time,z,y,x",
+         setDataset},
+        {"channel", "a whole number from 0", "n",
+         "which channel of an Imaris file, or setup of a BigDataViewer file; the first",
+         setChannel},
         {"table", "a file name", "file",
          "lookup table, .lut or .tf, beside the volume or on OSG's data path", setTable},
         {"ramp", "centre,width or centre,width,opacity with an opacity from 0 to 1",
@@ -188,6 +213,13 @@ Status setOption(VoxelOptions& options, const core::Option& option)
     return {};
 }
 
+// Expects that one kind of quotation mark is not in it.
+std::string inQuotes(const std::string& text)
+{
+    const char mark = text.find('"') == std::string::npos ? '"' : '\'';
+    return mark + text + mark;
+}
+
 } // namespace
 
 std::string VoxelOptions::voxelText() const
@@ -203,6 +235,8 @@ std::string VoxelOptions::voxelText() const
     if (overlap) add("overlap", std::to_string(*overlap));
     if (partial) add("partial", PARTIAL_NAMES[static_cast<int>(*partial)]);
     if (series) add("series", *series ? "on" : "off");
+    if (dataset) add("dataset", inQuotes(*dataset));
+    if (channel) add("channel", std::to_string(*channel));
     return text;
 }
 

@@ -17,7 +17,8 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
     if (options->spacing && !(options->spacing->x > 0.0)) std::abort();
     const Result<io::VoxelOptions> again = io::parseVoxelOptions(options->voxelText());
     if (!again.ok() || again->spacing != options->spacing || again->origin != options->origin ||
-        again->range != options->range || again->brick != options->brick)
+        again->range != options->range || again->brick != options->brick ||
+        again->dataset != options->dataset || again->channel != options->channel)
         std::abort();
     return 0;
 }

@@ -1,5 +1,6 @@
 #include <osgVolumizer/Paging.h>
 #include <osgVolumizer/ReadVoxels.h>
+#include <osgVolumizer/io/PluginFile.h>
 
 #include "../support/FolderTest.h"
 #include "../support/LeaksOfOthers.h"
@@ -306,10 +307,17 @@ TEST_F(ReadVoxels, OptionsApplyAndAreKept)
 TEST_F(ReadVoxels, BadOptionsAreNamed)
 {
     const std::string file = writeBytes("v.raw", std::string(64, 'x')) + ".4,4,4,uint8";
-    for (const char* bad :
-         {"spacing=1,1", "spacing=1,0,1", "spacing=1,nan,1", "spacing=", "origin=0,0,inf",
-          "origin=a,0,0", "range=5,5", "range=1", "range=nan,1", "range=-1e308,1e308", "brick=1",
-          "brick=1e9", "brick=8,8", "unit=-1", "unit=x", "table="}) {
+    for (const char* bad : {"spacing=1,1",     "spacing=1,0,1",
+                            "spacing=1,nan,1", "spacing=",
+                            "origin=0,0,inf",  "origin=a,0,0",
+                            "range=5,5",       "range=1",
+                            "range=nan,1",     "range=-1e308,1e308",
+                            "brick=1",         "brick=1e9",
+                            "brick=8,8",       "unit=-1",
+                            "unit=x",          "table=",
+                            "dataset=",        "dataset=a\"b'c",
+                            "channel=-1",      "channel=1.5",
+                            "channel=",        "channel=2147483648"}) {
         const Status status = statusOf(file, bad);
         EXPECT_EQ(ErrorCode::VALUE_INVALID, status.code);
         const std::string option = std::string(bad).substr(0, std::string(bad).find('='));
@@ -317,6 +325,42 @@ TEST_F(ReadVoxels, BadOptionsAreNamed)
         EXPECT_TRUE(names(status, "option " + option + " is \"" + value + "\"")) << status.text;
         EXPECT_TRUE(names(status, "v.raw")) << status.text;
     }
+}
+
+TEST_F(ReadVoxels, OptionsAreWrittenAsTheyAreRead)
+{
+    for (const char* dataset : {"/a/b", "/with blanks/in it", "/it's", "\"", "spacing=1,1,1"}) {
+        io::VoxelOptions options;
+        options.dataset = dataset;
+        options.channel = 12;
+        const Result<io::VoxelOptions> again = io::parseVoxelOptions(options.voxelText());
+        ASSERT_TRUE(again.ok()) << again.status.text;
+        EXPECT_EQ(again->dataset, options.dataset) << options.voxelText();
+        EXPECT_EQ(again->channel, options.channel);
+        EXPECT_FALSE(again->spacing);
+    }
+}
+
+TEST_F(ReadVoxels, OnlyFormatsOfPluginsAreLeftToPlugins)
+{
+    for (const char* name : {"scan.h5", "a/SCAN.HDF5", "x.he5", "c:/d.e/cells.ims"}) {
+        const io::PluginFormat* format = io::pluginFormatOf(name);
+        ASSERT_TRUE(format) << name;
+        EXPECT_EQ(std::string("HDF5"), format->name);
+    }
+    for (const char* name : {"scan.tif", "scan.dcm", "scan.h5.tif", "a.h5/scan", "scan.", "h5",
+                             ".h5", "", "a/.ims", "scan_h5", "x.vdb", "x.exr", "x.raw", "x.png"})
+        EXPECT_FALSE(io::pluginFormatOf(name)) << name;
+}
+
+TEST_F(ReadVoxels, APluginThatIsMissingIsNamed)
+{
+    const io::PluginFormat format{"osgvolumizer_none", "NONE", "libnone (Debian: libnone-dev)"};
+    const Status status = io::readByPlugin(format, "scan.none", {}).status;
+    EXPECT_EQ(ErrorCode::NOT_SUPPORTED, status.code);
+    EXPECT_EQ("scan.none is NONE, which this build cannot read: build with libnone (Debian: "
+              "libnone-dev)",
+              status.text);
 }
 
 TEST_F(ReadVoxels, OptionsOfOthersAreLeftToThem)

@@ -45,7 +45,7 @@ TEST(Packages, OfTheReadmeAreThoseOfTheScripts)
 TEST(Packages, AreNamedInNoScriptItself)
 {
     static const std::regex call("install_missing([^\n]*)");
-    static const std::regex variables("( \\$[A-Za-z_]*)+( \\|\\|.*)?");
+    static const std::regex variables("( \\$[A-Za-z_0-9]*)+( \\|\\|.*)?");
     for (const char* script :
          {"tests/run.sh", "tests/bench/chart.sh", "examples/demo.sh", "examples/pictures.sh"}) {
         const std::string text = textOf(source / script);
@@ -59,7 +59,7 @@ TEST(Packages, AreNamedInNoScriptItself)
 TEST(Packages, OfEveryScriptAreListed)
 {
     for (const char* list : {"TEST_PACKAGES", "DEMO_PACKAGES", "HEADLESS_DEMO_PACKAGES",
-                             "CHART_PACKAGES", "VTK_PACKAGES"}) {
+                             "CHART_PACKAGES", "VTK_PACKAGES", "HDF5_PACKAGES"}) {
         EXPECT_FALSE(packages(list).empty()) << list;
     }
 }

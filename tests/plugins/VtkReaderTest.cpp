@@ -337,6 +337,6 @@ TEST_F(VtkReaderPicture, ScalarsShowAsVoxelsDo)
     EXPECT_LE(support::compare(a, b).rmse, 1e-3);
 }
 
-#endif
-
 } // namespace VtkReaderTest
+
+#endif
