@@ -23,8 +23,8 @@ using osg::ClipControl;
 std::vector<StateRow> spaceRows()
 {
     return {
-        {"ClipPlane, ClipNode", mode(GL_CLIP_PLANE0), Effect::NONE_YET, true,
-         "A VolumeGeometry that ends where the plane is shows the same."},
+        {"ClipPlane, ClipNode", mode(GL_CLIP_PLANE0), Effect::AS_ON_GEOMETRY, true,
+         "What lies behind the plane is neither read nor marched."},
         {"Viewport", with<osg::Viewport>(8, 6, 32, 34), Effect::AS_ON_GEOMETRY, true,
          "Drawn into the rectangle."},
         {"ViewportIndexed", with<osg::ViewportIndexed>(0u, 8, 6, 32, 34), Effect::AS_ON_GEOMETRY,

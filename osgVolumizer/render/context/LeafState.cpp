@@ -7,7 +7,7 @@
 #include <osg/DepthRangeIndexed>
 
 #include <algorithm>
-#include <vector>
+#include <set>
 
 namespace osgVolumizer {
 namespace render {
@@ -29,17 +29,32 @@ std::vector<const osg::StateSet*> pathOf(const osgUtil::StateGraph* graph)
 } // namespace
 
 const StateAttribute* effectiveAttribute(const osgUtil::StateGraph* graph,
-                                         StateAttribute::Type type)
+                                         StateAttribute::Type type, unsigned member)
 {
     const StateAttribute* attribute = nullptr;
     bool overridden = false;
     for (const osg::StateSet* set : pathOf(graph)) {
-        const auto* pair = set->getAttributePair(type);
+        const auto* pair = set->getAttributePair(type, member);
         if (!pair || (overridden && !(pair->second & StateAttribute::PROTECTED))) continue;
         attribute = pair->first.get();
         overridden = (pair->second & StateAttribute::OVERRIDE) != 0;
     }
     return attribute;
+}
+
+std::vector<const osg::ClipPlane*> effectiveClipPlanes(const osgUtil::StateGraph* graph)
+{
+    std::set<unsigned> numbers;
+    for (const osg::StateSet* set : pathOf(graph))
+        for (const auto& attribute : set->getAttributeList())
+            if (attribute.first.first == StateAttribute::CLIPPLANE)
+                numbers.insert(attribute.first.second);
+    std::vector<const osg::ClipPlane*> planes;
+    for (const unsigned number : numbers)
+        if (const auto* plane = static_cast<const osg::ClipPlane*>(
+                effectiveAttribute(graph, StateAttribute::CLIPPLANE, number)))
+            planes.push_back(plane);
+    return planes;
 }
 
 bool isOn(const osgUtil::StateGraph* graph, GLenum mode, bool byDefault)

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <osg/ClipPlane>
 #include <osg/Depth>
 #include <osg/StateSet>
 #include <osgUtil/RenderLeaf>
 #include <osgUtil/StateGraph>
 
 #include <glm/mat4x4.hpp>
+
+#include <vector>
 
 namespace osgVolumizer {
 namespace render {
@@ -15,12 +18,16 @@ namespace render {
 /// The attribute of a type: the last one on the way down that no override stops. Null where none is
 /// set.
 const osg::StateAttribute* effectiveAttribute(const osgUtil::StateGraph* graph,
-                                              osg::StateAttribute::Type type);
+                                              osg::StateAttribute::Type type, unsigned member = 0);
 template <class Attribute>
 const Attribute* effective(const osgUtil::StateGraph* graph, osg::StateAttribute::Type type)
 {
     return static_cast<const Attribute*>(effectiveAttribute(graph, type));
 }
+
+/// The clip planes of state sets, likewise: of each number the one that counts, whose mode may be
+/// off.
+std::vector<const osg::ClipPlane*> effectiveClipPlanes(const osgUtil::StateGraph* graph);
 
 /// Likewise for a mode.
 bool isOn(const osgUtil::StateGraph* graph, GLenum mode, bool byDefault);

@@ -8,7 +8,9 @@
 #include <osgUtil/CullVisitor>
 
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace osgVolumizer {
@@ -86,6 +88,15 @@ OccupancyQuery occupancyQuery(const VolumeInstance& volume, const Voxels& voxels
     return query;
 }
 
+bool isClipped(const VolumeInstance& volume, const core::Box3d& box)
+{
+    return std::any_of(
+        volume.clipPlanes.begin(), volume.clipPlanes.end(), [&box](const core::Plane& plane) {
+            return plane.distance(glm::mix(box.min, box.max,
+                                           glm::greaterThan(plane.normal, glm::dvec3(0.0)))) < 0.0;
+        });
+}
+
 unsigned frameOf(const osgUtil::CullVisitor& visitor)
 {
     const osg::FrameStamp* stamp = visitor.getFrameStamp();
@@ -126,6 +137,7 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, const ViewHooks&
             brick.box = intersection(brick.box, prepared.regionBox);
             if (brick.box.empty()) continue;
             if (visitor.isCulled(objectBounds(brick.box, prepared.frameToObject))) continue;
+            if (isClipped(volume, brick.box)) continue;
         }
         // Gathered rays count every value, shown or not.
         if (!features.gathers() &&

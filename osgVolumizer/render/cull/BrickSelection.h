@@ -22,6 +22,9 @@ osg::BoundingBox objectBounds(const core::Box3d& box, const glm::dmat4& frameToO
 OccupancyQuery occupancyQuery(const VolumeInstance& volume, const Voxels& voxels);
 
 /// The number of the frame that is culled; 0 where the visitor knows none.
+/// Whether a box of the voxel frame lies wholly outside a volume's clip planes.
+bool isClipped(const VolumeInstance& volume, const core::Box3d& box);
+
 unsigned frameOf(const osgUtil::CullVisitor& visitor);
 
 /// Whether so many cells of the selected bricks are empty that leaping over them pays.

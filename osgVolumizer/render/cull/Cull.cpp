@@ -1,5 +1,6 @@
 #include "Cull.h"
 
+#include "../context/ClipPlanes.h"
 #include "../context/Matrices.h"
 #include "../context/Statistics.h"
 #include "../draw/VolumeProgram.h"
@@ -121,12 +122,16 @@ std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
     volume->sampling = appearance.getSamplingParameters();
     volume->sampling.maximumSamples = std::min(volume->sampling.maximumSamples, MOST_SAMPLES);
     volume->viewId = viewIdOf(visitor);
+    volume->above = stateAbove(visitor.getCurrentStateGraph());
     if (voxels && !volume->prepared->voxelFrame) {
         const osg::Vec3d s = voxels->getSpacing();
         volume->sampling.voxelSize = {s.x(), s.y(), s.z()};
     }
     volume->frameToEye = new osg::RefMatrix(
         toOsg(toGlm(*visitor.getModelViewMatrix()) * volume->prepared->frameToObject));
+    volume->clipPlanes =
+        clipPlanesOf(visitor.getCurrentStateGraph(), *visitor.getCurrentRenderBin()->getStage(),
+                     *volume->frameToEye);
     TableTexture table;
     if (voxels) volume->steps = timeStepsOf(appearance, visitor.getFrameStamp());
     if (voxels) table = chooseSampling(*volume, visitor);
@@ -159,17 +164,15 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     }
     const VolumeAppearance* appearance = nearestAppearance(visitor.getNodePath());
     if (!appearance) return;
-    std::unique_ptr<VolumeInstance> volume = makeInstance(geometry, *appearance, visitor);
-    if (!volume) return;
     osg::StateSet* own = geometry.getStateSet();
     if (own) visitor.pushStateSet(own);
-    volume->above = stateAbove(visitor.getCurrentStateGraph());
+    std::unique_ptr<VolumeInstance> volume = makeInstance(geometry, *appearance, visitor);
     const auto isInView = [&] {
         return visitor.getComputeNearFarMode() == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR ||
                visitor.updateCalculatedNearFar(*visitor.getModelViewMatrix(),
                                                geometry.getBoundingBox());
     };
-    if (select(*volume, visitor) && isInView()) registerVolume(std::move(volume), visitor);
+    if (volume && select(*volume, visitor) && isInView()) registerVolume(std::move(volume), visitor);
     if (own) visitor.popStateSet();
 }
 

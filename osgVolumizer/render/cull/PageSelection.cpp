@@ -145,7 +145,8 @@ std::optional<PageSelection::Node> PageSelection::make(std::int64_t index)
     node.box = node.brick.clipBox;
     if (_volume.prepared->voxelFrame) {
         node.box = intersection(node.box, _volume.prepared->regionBox);
-        if (node.box.empty() || isOutside(node.box)) return std::nullopt;
+        if (node.box.empty() || isOutside(node.box) || isClipped(_volume, node.box))
+            return std::nullopt;
         const double w = clipW(_view.toEye, node.box, _visitor).x;
         node.error = node.brick.spacing / (_voxelsPerPixel * w);
         if (!(node.error >= 0.0)) node.error = std::numeric_limits<double>::max();

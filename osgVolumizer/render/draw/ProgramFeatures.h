@@ -44,7 +44,7 @@ struct ProgramFeatures : ProgramFlags
     /// multiple of 4. Expects opaqueDepth, one brick, and the whole depth of the volume.
     int slotCount = 0;
     int paintCount = 0; ///< bricks of volumes that paint this one; no more than 4
-    int planeCount = 0; ///< half-spaces that end the segment, besides the clip box
+    int planeCount = 0; ///< half-spaces that cut it, besides the clip box
     int filterBits = 0; ///< see ContextLimits; less than 16
 
     /// Whether surfaces are sorted before the volume, whose shader reads them.

@@ -1,5 +1,7 @@
 #include "SceneLights.h"
 
+#include "../context/PositionedAttributes.h"
+
 #include <osg/Light>
 
 #include <glm/geometric.hpp>
@@ -38,16 +40,14 @@ EyeLight inEyeFrame(const osg::Light& light, const osg::Matrixd& toEye)
     return result;
 }
 
+} // namespace
+
 // A light that is set again replaces the one of the same number, as in GL.
-void append(osgUtil::PositionalStateContainer* container, const osg::Matrixd& after,
-            std::vector<EyeLight>& lights)
+std::vector<EyeLight> lightsOf(osgUtil::RenderStage& stage)
 {
-    if (!container) return;
-    for (const auto& entry : container->getAttrMatrixList()) {
-        const auto* light = dynamic_cast<const osg::Light*>(entry.first.get());
-        if (!light) continue;
-        const EyeLight made =
-            inEyeFrame(*light, entry.second ? osg::Matrixd(*entry.second) * after : after);
+    std::vector<EyeLight> lights;
+    for (const auto& positioned : positionedAttributes<osg::Light>(stage)) {
+        const EyeLight made = inEyeFrame(*positioned.first, positioned.second);
         const auto same = std::find_if(lights.begin(), lights.end(),
                                        [&](const EyeLight& l) { return l.number == made.number; });
         if (same != lights.end())
@@ -55,16 +55,6 @@ void append(osgUtil::PositionalStateContainer* container, const osg::Matrixd& af
         else
             lights.push_back(made);
     }
-}
-
-} // namespace
-
-std::vector<EyeLight> lightsOf(osgUtil::RenderStage& stage)
-{
-    std::vector<EyeLight> lights;
-    append(stage.getInheritedPositionalStateContainer(),
-           stage.getInheritedPositionalStateContainerMatrix(), lights);
-    append(stage.getPositionalStateContainer(), osg::Matrixd::identity(), lights);
     return lights;
 }
 

@@ -30,7 +30,8 @@ struct VolumeLook
     double voxelsPerSample = 1.0;         ///< along the view axis
     int maximumSteps = 1;
     glm::vec3 regionMin{0.0f}, regionMax{0.0f}; ///< slabs: box of the whole volume (frame)
-    std::vector<glm::vec4> planes;              ///< slabs: the region's half-spaces (frame)
+    /// Half-spaces (frame) that cut: clip planes, and slabs by those of the region.
+    std::vector<glm::vec4> planes;
     /// Slabs: part of a pixel, in the frame. Faces are this much larger than what they stand for:
     /// which pixels a segment covers is for the shader to say, whose answer does not depend on how
     /// GL rounds vertices or whom it gives the pixels on an edge.

@@ -76,7 +76,6 @@ void setSegment(const Uniforms& uniforms, const VolumePart& part)
     if (part.features.ranked) uniforms.set("rank", part.rank);
     uniforms.set("regionMin", look.regionMin);
     uniforms.set("regionMax", look.regionMax);
-    uniforms.set("planes", look.planes);
     uniforms.set("isoTexel", look.isoTexel);
 }
 
@@ -138,6 +137,7 @@ void setUniforms(osg::State& state, const Uniforms& uniforms, const VolumePart& 
     uniforms.set("rayDirection", rays.direction);
     uniforms.set("frameToUnits", look.frameToUnits);
     if (look.table.texture) setTable(uniforms, look);
+    if (!look.planes.empty()) uniforms.set("planes", look.planes);
     if (part.features.slab) {
         setSegment(uniforms, part);
     } else {

@@ -25,17 +25,30 @@ void refuse(const VolumeInstance& volume, const std::string& why)
                 "VolumeAppearance \"" + volume.appearance->getName() + "\": " + why});
 }
 
+// The half-spaces that a volume lies in besides its box.
+std::vector<glm::vec4> planesOf(const VolumeInstance& volume)
+{
+    std::vector<glm::vec4> planes;
+    for (const auto* some : {&volume.prepared->obliquePlanes, &volume.clipPlanes})
+        for (const core::Plane& plane : *some)
+            planes.emplace_back(glm::dvec4(plane.normal, plane.offset));
+    return planes;
+}
+
 // The paints of a volume, still for itself as the painted one.
 std::vector<Paint> paintsOf(const VolumeInstance& volume)
 {
     const PreparedGeometry& prepared = *volume.prepared;
+    std::vector<glm::vec4> planes = planesOf(volume);
     if (!volume.look->features.voxels || !prepared.voxelFrame || !prepared.region ||
-        prepared.obliquePlanes.size() > std::size_t(Paint::MAXIMUM_PLANES)) {
+        planes.size() > std::size_t(Paint::MAXIMUM_PLANES)) {
         refuse(volume, "painting needs voxels in a convex region of no more than " +
                            std::to_string(Paint::MAXIMUM_PLANES) +
-                           " oblique faces, in one voxel frame; the volume is not shown");
+                           " oblique faces and clip planes, in one voxel frame; the volume is not "
+                           "shown");
         return {};
     }
+    planes.resize(Paint::MAXIMUM_PLANES, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
     std::vector<Paint> result;
     for (const SelectedBrick& brick : volume.bricks) {
         Paint paint;
@@ -45,9 +58,7 @@ std::vector<Paint> paintsOf(const VolumeInstance& volume)
         paint.textureOffset = brick.textureOffset;
         paint.boxMin = glm::vec3(brick.box.min);
         paint.boxMax = glm::vec3(brick.box.max);
-        for (const core::Plane& plane : prepared.obliquePlanes)
-            paint.planes.emplace_back(glm::dvec4(plane.normal, plane.offset));
-        paint.planes.resize(Paint::MAXIMUM_PLANES, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+        paint.planes = planes;
         paint.valueToEntry = volume.look->valueToEntry;
         paint.rgba = volume.look->features.rgba;
         paint.nearest = volume.look->features.nearest;

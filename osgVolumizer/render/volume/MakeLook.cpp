@@ -157,10 +157,12 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
         look->regionMin = glm::vec3(prepared.regionBox.min);
         look->regionMax = glm::vec3(prepared.regionBox.max);
         look->pixelMargin = pixelMargin(toEye, prepared.regionBox, visitor);
-        features.planeCount = static_cast<int>(prepared.obliquePlanes.size());
         for (const core::Plane& p : prepared.obliquePlanes)
             look->planes.emplace_back(glm::dvec4(p.normal, p.offset));
     }
+    for (const core::Plane& p : volume.clipPlanes)
+        look->planes.emplace_back(glm::dvec4(p.normal, p.offset));
+    features.planeCount = static_cast<int>(look->planes.size());
     return look;
 }
 

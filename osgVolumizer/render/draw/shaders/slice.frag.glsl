@@ -1,7 +1,7 @@
 // One slice: the layer between two sampling surfaces, as thick as this pixel's ray finds it.
 
 in vec3 voxelCoordinate;
-#ifdef PAINTED
+#if defined(PAINTED) || PLANES > 0
 in vec3 framePosition;
 #endif
 #ifdef VERTEX_COLORS
@@ -23,6 +23,10 @@ uniform mat3 rayDirectionEye;
 
 void main()
 {
+#if PLANES > 0
+    for (int i = 0; i < PLANES; ++i)
+        if (dot(planes[i], vec4(framePosition, 1.0)) < 0.0) discard;
+#endif
     vec3 origin, direction;
     pixelRay(origin, direction);
 #ifdef SPHERICAL

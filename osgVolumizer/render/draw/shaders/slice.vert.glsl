@@ -8,7 +8,7 @@ out vec4 vertexColor;
 #endif
 layout(location = 4) in float spacingIn;
 out vec3 voxelCoordinate;
-#ifdef PAINTED
+#if defined(PAINTED) || PLANES > 0
 out vec3 framePosition;
 #endif
 flat out float spacing; // between surfaces
@@ -28,7 +28,7 @@ void main()
 #ifdef VERTEX_COLORS
     vertexColor = colorIn;
 #endif
-#ifdef PAINTED
+#if defined(PAINTED) || PLANES > 0
     framePosition = position;
 #endif
     spacing = spacingIn;
