@@ -115,7 +115,8 @@ void setDefines(StateSet& set, unsigned value)
 std::vector<StateRow> shadingRows()
 {
     return {
-        {"Fog", setFog, Effect::NONE_YET, true, "Volumes keep their colours at any distance."},
+        {"Fog", setFog, Effect::AS_ON_GEOMETRY, true,
+         "By the depth of each sample; where a ray function gathers, of the volume's middle."},
         {"`GL_LIGHTING`", mode(GL_LIGHTING), Effect::NONE, true,
          "Volumes are lit where their appearance says so, see `setShading()`."},
         {"Light", setLight, Effect::NONE, true,

@@ -39,9 +39,8 @@ std::vector<core::Plane> clipPlanesOf(const osgUtil::StateGraph* graph, osgUtil:
 {
     std::map<unsigned, core::Plane> byNumber;
     for (const auto& positioned : positionedAttributes<osg::ClipPlane>(stage))
-        byNumber[positioned.first->getClipPlaneNum()] =
-            transformed(positioned.first->getClipPlane(),
-                        leafToEye * osg::Matrixd::inverse(positioned.second));
+        byNumber[positioned.first->getClipPlaneNum()] = transformed(
+            positioned.first->getClipPlane(), leafToEye * osg::Matrixd::inverse(positioned.second));
     for (const auto* plane : effectiveClipPlanes(graph))
         byNumber[plane->getClipPlaneNum()] =
             transformed(plane->getClipPlane(), osg::Matrixd::identity());

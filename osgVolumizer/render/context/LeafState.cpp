@@ -5,8 +5,12 @@
 #include <osg/ClipControl>
 #include <osg/ColorMask>
 #include <osg/DepthRangeIndexed>
+#include <osg/Fog>
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace osgVolumizer {
@@ -83,9 +87,46 @@ bool writesAllChannels(const osgUtil::StateGraph* graph)
                      mask->getAlphaMask());
 }
 
+namespace {
+
+std::optional<FogAbove> fogAbove(const osgUtil::StateGraph* graph)
+{
+    constexpr double LOG2_E = 1.4426950408889634;
+    const auto* fog = effective<osg::Fog>(graph, StateAttribute::FOG);
+    if (!fog || !isOn(graph, GL_FOG, false)) return std::nullopt;
+    FogAbove made;
+    made.color = {fog->getColor().r(), fog->getColor().g(), fog->getColor().b()};
+    const double density = static_cast<double>(fog->getDensity());
+    const double start = static_cast<double>(fog->getStart());
+    const double end = static_cast<double>(fog->getEnd());
+    switch (fog->getMode()) {
+    case osg::Fog::LINEAR:
+        if (start == end) return std::nullopt; // undefined in OpenGL
+        made.linear = true;
+        made.rates = glm::vec3(end / (end - start), -1.0 / (end - start), 0.0);
+        break;
+    case osg::Fog::EXP:
+        made.rates.y = static_cast<float>(density * LOG2_E);
+        break;
+    case osg::Fog::EXP2:
+        made.rates.z = static_cast<float>(density * density * LOG2_E);
+        break;
+    }
+    return made;
+}
+
+} // namespace
+
+float FogAbove::share(double depth) const
+{
+    const double sum = glm::dot(glm::dvec3(rates), glm::dvec3(1.0, depth, depth * depth));
+    return static_cast<float>(linear ? std::clamp(sum, 0.0, 1.0) : std::exp2(-sum));
+}
+
 StateAbove stateAbove(const osgUtil::StateGraph* graph)
 {
     StateAbove state;
+    state.fog = fogAbove(graph);
     if (const auto* depth = effective<osg::Depth>(graph, StateAttribute::DEPTH))
         state.depthTest = {depth->getFunction(), depth->getZNear(), depth->getZFar()};
     if (const auto* range =

@@ -8,6 +8,7 @@
 
 #include <glm/mat4x4.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace osgVolumizer {
@@ -62,9 +63,20 @@ struct DepthTest
     }
 };
 
+/// osg::Fog without coordinates of its own: what a colour's share is at a depth.
+struct FogAbove
+{
+    glm::vec3 color{0.0f};
+    bool linear = false;
+    glm::vec3 rates{0.0f}; ///< of depth to the powers 0, 1, 2; linear: the share; else its -log2
+
+    float share(double depth) const;
+};
+
 /// The state that volumes take from above them, as other geometry does.
 struct StateAbove
 {
+    std::optional<FogAbove> fog;
     DepthTest depthTest;
     bool stencilTested = false, allChannels = true;
     bool partly = false; ///< scissor, stipple or discarding keep it off pixels

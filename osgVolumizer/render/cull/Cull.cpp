@@ -172,7 +172,8 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
                visitor.updateCalculatedNearFar(*visitor.getModelViewMatrix(),
                                                geometry.getBoundingBox());
     };
-    if (volume && select(*volume, visitor) && isInView()) registerVolume(std::move(volume), visitor);
+    if (volume && select(*volume, visitor) && isInView())
+        registerVolume(std::move(volume), visitor);
     if (own) visitor.popStateSet();
 }
 

@@ -121,7 +121,9 @@ bool setBatch(const BatchDrawing& drawing, const BrickBatch& batch)
         uniforms.set("brickMin", batch.brickMin);
         uniforms.set("brickMax", batch.brickMax);
     }
-    uniforms.set("stride", batch.stride);
+    // What is the same everywhere is not in fog.
+    const bool fades = drawing.features.fog && batch.stride == ALL_STEPS;
+    uniforms.set("stride", fades ? 1.0f : batch.stride);
     uniforms.set("clipMin", batch.clipMin);
     uniforms.set("clipMax", batch.clipMax);
     return true;

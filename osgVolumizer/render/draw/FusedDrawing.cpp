@@ -57,7 +57,7 @@ bool isHomogeneous(const FusedMember& member)
 {
     const ProgramFeatures& features = member.part->features;
     return member.batch.cells && member.batch.cells->homogeneous && !features.shading &&
-           features.paintCount == 0;
+           features.paintCount == 0 && !features.fog;
 }
 
 // Values and table of a member, for a program whose names of them have a suffix or none.

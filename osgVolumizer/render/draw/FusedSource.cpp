@@ -74,7 +74,7 @@ std::string volumeSource(const ProgramFeatures& volume)
 {
     std::string code;
     for (const char* file : {"filtering.glsl", "voxels.glsl", "transfer.glsl", "ray.glsl",
-                             "shading.glsl", "skipping.glsl", "region.glsl"})
+                             "shading.glsl", "fog.glsl", "skipping.glsl", "region.glsl"})
         code += shaderSource(file);
     return volume.paintCount > 0 ? code + paintSource(volume.paintCount) : code;
 }

@@ -38,6 +38,7 @@ constexpr Flag FLAGS[] = {
     {&ProgramFlags::countSamples, "COUNT_SAMPLES"},
     {&ProgramFlags::coarse, "COARSE"},
     {&ProgramFlags::blendsSteps, "BLENDS_STEPS"},
+    {&ProgramFlags::fog, "FOG"},
     {&ProgramFlags::inOrder, "IN_ORDER"},
 };
 // A flag without a row would be missing in the key, and programs would be taken for one another.

@@ -33,6 +33,7 @@ struct ProgramFlags
     bool countSamples = false;    ///< draw the number of samples: see ViewHooks
     bool coarse = false;          ///< fewer rays than pixels: see CoarseImage
     bool blendsSteps = false;     ///< values are those between two time steps
+    bool fog = false;             ///< colours fade with depth
     bool inOrder = false;         ///< of several that are marched: one after another, not together
 };
 

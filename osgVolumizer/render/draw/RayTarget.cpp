@@ -61,6 +61,8 @@ void RayTarget::resolve(const VolumeLook& look)
     if (!program) return;
     const Uniforms uniforms(_gl, *program);
     uniforms.set("rays", int(UNIT_RAYS));
+    uniforms.set("fogColor", look.fog.color);
+    uniforms.set("fogShare", look.features.fog ? look.fog.share(look.referenceDepth) : 1.0f);
     _state.applyTextureAttribute(UNIT_RAYS, _resources.part<RayBuffers>().target.color.get());
     if (!_features.rgba) {
         uniforms.set("lookupTable", int(UNIT_TABLE));

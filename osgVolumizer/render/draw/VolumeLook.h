@@ -1,5 +1,6 @@
 #pragma once
 
+#include "../context/LeafState.h"
 #include "../textures/TableTextures.h"
 #include "ProgramFeatures.h"
 
@@ -21,6 +22,7 @@ struct VolumeLook
     glm::vec2 valueToEntry{1.0f, 0.0f}; ///< scale and offset: texel -> entry of the table
     double texelToFraction = 1.0;       ///< scale of texels to fractions of the range
     float isoTexel = 0.0f;
+    FogAbove fog;                         ///< with the feature
     glm::vec4 material{0.0f};             ///< ambient, diffuse, specular, shininess
     glm::vec2 gradientDecode{1.0f, 0.0f}; ///< scale, offset: gradient texture -> texels per voxel
     glm::dmat3 frameToUnits{1.0};         ///< frame vector -> opacity units

@@ -64,7 +64,14 @@ void setShading(const Uniforms& uniforms, const VolumePart& part, const PixelRay
     uniforms.set("gradientDecode", look.gradientDecode);
     uniforms.set("rayOriginEye", rays.originEye);
     uniforms.set("rayDirectionEye", rays.directionEye);
-    if (!look.features.slab) uniforms.set("frameToEye", frameToEye);
+}
+
+void setFog(const Uniforms& uniforms, const VolumeLook& look, const PixelRays& rays)
+{
+    uniforms.set("fogColor", look.fog.color);
+    uniforms.set("fogIsLinear", look.fog.linear ? 1 : 0);
+    uniforms.set("fogRates", look.fog.rates);
+    uniforms.set("fogDepth", static_cast<float>(-rays.originEye[2].z));
 }
 
 void setSegment(const Uniforms& uniforms, const VolumePart& part)
@@ -145,6 +152,9 @@ void setUniforms(osg::State& state, const Uniforms& uniforms, const VolumePart& 
         if (part.features.spherical) uniforms.set("rayDirectionEye", rays.directionEye);
     }
     if (part.features.shading) setShading(uniforms, part, rays, frameToEye, state);
+    if (part.features.fog) setFog(uniforms, look, rays);
+    if (!part.features.slab && (part.features.shading || part.features.fog))
+        uniforms.set("frameToEye", frameToEye);
     if (part.features.opaqueDepth) setDepthTextures(state, uniforms, rays, part, buffers);
 }
 

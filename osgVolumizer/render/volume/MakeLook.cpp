@@ -139,6 +139,8 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     look->table = table;
     Reasons reasons;
     setFeatures(appearance, prepared, features, reasons);
+    if (volume.above.fog) look->fog = *volume.above.fog;
+    features.fog = volume.above.fog.has_value();
     features.spherical = !features.slab && volume.sampling.mode == SamplingMode::SPHERICAL;
     if (appearance.getVoxels()) setValues(appearance, *appearance.getVoxels(), *look);
     look->frameToUnits =

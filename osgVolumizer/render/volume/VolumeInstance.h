@@ -25,7 +25,7 @@ struct VolumeInstance
     std::shared_ptr<const PreparedGeometry> prepared;
     std::shared_ptr<const VolumeLook> look;
     StateAbove above;
-    std::vector<core::Plane> clipPlanes; ///< frame; osg::ClipPlanes of the state above
+    std::vector<core::Plane> clipPlanes;     ///< frame; osg::ClipPlanes of the state above
     bool skipping = false;                   ///< leap over cells that show nothing
     bool countSamples = false;               ///< see ViewHooks
     osg::ref_ptr<osg::RefMatrix> frameToEye; ///< model-view of the leaf

@@ -56,6 +56,7 @@ void addClassified(vec4 c, vec3 place, float t, inout vec4 sum)
 #ifdef PAINTED
     c.rgb = painted(c.rgb, memberOrigin + t * memberDirection);
 #endif
+    c.rgb = fogged(c.rgb, t);
     COUNT_SAMPLE
     sum += vec4(c.rgb, 1.0) * (c.a * unitsPerDepth);
 }

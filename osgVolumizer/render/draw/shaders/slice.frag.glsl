@@ -11,9 +11,10 @@ out vec4 fragColor;
 
 flat in float spacing;
 uniform vec3 surfaceNormal; // spacing is counted along it (frame units); planes
-#ifdef SHADING
+#if defined(SHADING) || defined(FOG)
 in vec3 eyePosition;
-#elif defined(SPHERICAL)
+#endif
+#if defined(SPHERICAL) && !defined(SHADING)
 uniform mat3 rayDirectionEye;
 #endif
 

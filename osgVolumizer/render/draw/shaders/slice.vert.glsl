@@ -13,7 +13,7 @@ out vec3 framePosition;
 #endif
 flat out float spacing; // between surfaces
 uniform mat4 frameToClip;
-#ifdef SHADING
+#if defined(SHADING) || defined(FOG)
 uniform mat4 frameToEye;
 out vec3 eyePosition;
 #endif
@@ -32,7 +32,7 @@ void main()
     framePosition = position;
 #endif
     spacing = spacingIn;
-#ifdef SHADING
+#if defined(SHADING) || defined(FOG)
     eyePosition = (frameToEye * vec4(position, 1.0)).xyz;
 #endif
     gl_Position = frameToClip * vec4(position, 1.0);

@@ -54,6 +54,7 @@ void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float
 #ifdef PAINTED
     c.rgb = painted(c.rgb, origin + (t - 0.5 * depth) * direction);
 #endif
+    c.rgb = fogged(c.rgb, t - 0.5 * depth);
     COUNT_SAMPLE
     float next = light.a * exp2(-c.a * (depth * unitsPerDepth));
     light = vec4(light.rgb + (light.a - next) * c.rgb, next);
@@ -136,6 +137,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 #ifdef PAINTED
         c.rgb = painted(c.rgb, origin + t * direction);
 #endif
+        c.rgb = fogged(c.rgb, t);
         t += dt;
         COUNT_SAMPLE
         float next = transmittance * exp2(-c.a * units);
@@ -147,6 +149,9 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 }
 
 #else
+#ifdef FOG
+float sliceDepth() { return -eyePosition.z - fogDepth; }
+#endif
 vec4 slice(vec3 place, vec3 direction, float thickness)
 {
 #ifdef PREINTEGRATED
@@ -172,6 +177,7 @@ vec4 slice(vec3 place, vec3 direction, float thickness)
 #ifdef PAINTED
     c.rgb = painted(c.rgb, framePosition);
 #endif
+    c.rgb = fogged(c.rgb, sliceDepth());
     float units = thickness * length(frameToUnits * direction);
     float depth = 0.6931471806 * c.a * units; // optical
     // 1 - exp(-depth) without cancelling the digits of thin layers.

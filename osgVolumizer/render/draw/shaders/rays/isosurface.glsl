@@ -58,7 +58,7 @@ vec3 colorAt(vec3 origin, vec3 direction, float t)
 #ifdef PAINTED
     color.rgb = painted(color.rgb, origin + t * direction);
 #endif
-    return color.rgb;
+    return fogged(color.rgb, t);
 }
 
 #ifdef MEMBER
