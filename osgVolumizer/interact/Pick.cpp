@@ -99,7 +99,7 @@ Result<std::optional<PixelPick>> zpick(osg::Camera& camera, double x, double y,
     const osg::Viewport* viewport = camera.getViewport();
     if (!viewport) return Status(ErrorCode::VALUE_INVALID, "the camera has no viewport");
     const osg::Matrixd toWindow = camera.getViewMatrix() * camera.getProjectionMatrix();
-    if (osg::Matrixd inverse; !inverse.invert(toWindow))
+    if (osg::Matrixd inverse; !picking::invert(toWindow, inverse))
         return Status(ErrorCode::SINGULAR_MATRIX, "the camera's matrices have no inverse");
     osg::ref_ptr<osgUtil::LineSegmentIntersector> intersector = new osgUtil::LineSegmentIntersector(
         osgUtil::Intersector::WINDOW, viewport->x() + x, viewport->y() + y);

@@ -145,7 +145,7 @@ Result<VoxelProbe> probe(const osg::NodePath& path, const osg::Vec3d& worldStart
                                                 "VolumeGeometry below a VolumeAppearance");
     const osg::Matrixd toWorld = osg::computeLocalToWorld(path);
     osg::Matrixd toObject;
-    if (!toObject.invert(toWorld))
+    if (!picking::invert(toWorld, toObject))
         return Status(ErrorCode::SINGULAR_MATRIX,
                       "the transforms above a volume to be probed have no inverse");
     Result<VoxelProbe> found =

@@ -44,12 +44,8 @@ osg::ref_ptr<Voxels> ramp()
 }
 
 // Values rise from the middle outwards; the table is a thin shell with sharp sides.
-const Points SHELL = {{0.0, {1, 0, 0, 0.0}},
-                      {0.5, {1, 0, 0, 0.0}},
-                      {0.5, {1, 0, 0, 0.9}},
-                      {0.54, {1, 0, 0, 0.9}},
-                      {0.54, {1, 0, 0, 0.0}},
-                      {1.0, {1, 0, 0, 0.0}}};
+const Points SHELL = {{0.0, {1, 0, 0, 0.0}},  {0.5, {1, 0, 0, 0.0}},  {0.5, {1, 0, 0, 0.9}},
+                      {0.54, {1, 0, 0, 0.9}}, {0.54, {1, 0, 0, 0.0}}, {1.0, {1, 0, 0, 0.0}}};
 
 osg::ref_ptr<Voxels> distances(int size)
 {
@@ -76,15 +72,16 @@ TEST(PickOracle, ShellWithSteps)
 
 TEST(PickOracle, NearestSamples)
 {
-    EXPECT_GT(compareBox(makeBlob(glm::ivec3(32), 6.0), smoothPoints(0.5), VolumeAppearance::NEAREST),
-              300);
+    EXPECT_GT(
+        compareBox(makeBlob(glm::ivec3(32), 6.0), smoothPoints(0.5), VolumeAppearance::NEAREST),
+        300);
 }
 
 TEST(PickOracle, CubicInterpolation)
 {
-    EXPECT_GT(compareBox(makeBlob(glm::ivec3(24), 4.0), smoothPoints(0.5), VolumeAppearance::CUBIC,
-                         300),
-              100);
+    EXPECT_GT(
+        compareBox(makeBlob(glm::ivec3(24), 4.0), smoothPoints(0.5), VolumeAppearance::CUBIC, 300),
+        100);
 }
 
 TEST(PickOracle, Detail)
@@ -150,9 +147,9 @@ TEST(PickOracle, AnOpacityUnitAndSpacing)
         if (!inside(v, glm::dvec3(0.0), glm::dvec3(31.0))) return 0.0;
         return oracle::Table::extinction(table.color(grid->value(v)).a) / 2.5;
     };
-    EXPECT_GT(comparePicks(*appearance, extinction, {-7, 3, 100}, {8.5, 65, 131}, LINES, 0.05,
-                           STEP),
-              200);
+    EXPECT_GT(
+        comparePicks(*appearance, extinction, {-7, 3, 100}, {8.5, 65, 131}, LINES, 0.05, STEP),
+        200);
 }
 
 TEST(PickOracle, RgbaVoxels)
@@ -167,7 +164,8 @@ TEST(PickOracle, RgbaVoxels)
     std::vector<double> alpha;
     for (int i = 0; i < SIZE * SIZE * SIZE; ++i) {
         const glm::dvec3 p(i % SIZE, i / SIZE % SIZE, i / SIZE / SIZE);
-        const double a = std::floor(120.0 * bumps(p) * std::exp(-0.01 * glm::dot(p - 12.0, p - 12.0)));
+        const double a =
+            std::floor(120.0 * bumps(p) * std::exp(-0.01 * glm::dot(p - 12.0, p - 12.0)));
         for (int c = 0; c < 3; ++c)
             bytes[4 * i + c] = 200;
         bytes[4 * i + 3] = static_cast<unsigned char>(a);

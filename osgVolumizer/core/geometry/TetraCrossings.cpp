@@ -155,21 +155,30 @@ std::vector<TetraCrossings::Crossing> TetraCrossings::find(const glm::dvec3& sta
 
 namespace {
 
-// 1 or -1 where the segment goes through the triangle, by the direction; else 0. Of a segment
-// through an edge or a corner: as if it passed on the side where the signs are 1.
+// On which side of the line through s and e that through p and q passes. Where they meet: on which
+// it would if e were moved a little along x, less along y, still less along z (Edelsbrunner and
+// Muecke, "Simulation of simplicity", ACM Transactions on Graphics 9, 1990).
+int passingSide(const glm::dvec3& s, const glm::dvec3& e, const glm::dvec3& p, const glm::dvec3& q)
+{
+    int sign = orientationSign(s, e, p, q);
+    for (int axis = 0; axis < 3 && sign == 0; ++axis) {
+        glm::dvec3 moved = s;
+        moved[axis] += std::max(1.0, std::fabs(s[axis]));
+        sign = orientationSign(s, moved, p, q);
+    }
+    return sign;
+}
+
+// 1 or -1 where the segment goes through the triangle, 1 from the side that it is seen
+// counter-clockwise from; else 0.
 int passes(const glm::dvec3& s, const glm::dvec3& e, const glm::dvec3& a, const glm::dvec3& b,
            const glm::dvec3& c)
 {
     const int before = orientationSign(a, b, c, s), after = orientationSign(a, b, c, e);
     if ((before > 0) == (after > 0)) return 0;
-    // Each edge is asked for in one direction only, whichever face asks.
-    const auto side = [&](const glm::dvec3& p, const glm::dvec3& q) {
-        const bool inOrder = p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
-        const int sign = inOrder ? orientationSign(s, e, p, q) : orientationSign(s, e, q, p);
-        return (sign >= 0) == inOrder;
-    };
-    const bool ab = side(a, b), bc = side(b, c), ca = side(c, a);
-    if (ab != bc || bc != ca) return 0;
+    const int ab = passingSide(s, e, a, b), bc = passingSide(s, e, b, c),
+              ca = passingSide(s, e, c, a);
+    if (ab == 0 || ab != bc || bc != ca) return 0;
     return before > 0 ? 1 : -1;
 }
 
@@ -199,6 +208,23 @@ void addCrossing(const TetraSet& set, std::size_t tetrahedron, std::size_t corne
     crossings.push_back(crossing);
 }
 
+// Where a segment enters and leaves in one place, rounding may have exchanged the two: none leaves
+// what it is not in.
+void enterFirst(std::vector<BoundaryCrossing>& crossings)
+{
+    int inside = 0;
+    for (std::size_t i = 0; i < crossings.size(); ++i) {
+        constexpr double SAME = 1e-9;
+        std::size_t k = i;
+        while (inside == 0 && k + 1 < crossings.size() && !crossings[k].enters &&
+               crossings[k + 1].parameter <= crossings[i].parameter + SAME)
+            ++k;
+        if (k != i && crossings[k].enters) std::swap(crossings[i], crossings[k]);
+        inside += crossings[i].enters ? 1 : -1;
+        if (inside < 0) inside = 0; // it began inside
+    }
+}
+
 } // namespace
 
 std::vector<BoundaryCrossing> boundaryCrossings(const TetraSet& set, const glm::dvec3& start,
@@ -214,6 +240,7 @@ std::vector<BoundaryCrossing> boundaryCrossings(const TetraSet& set, const glm::
                      [](const BoundaryCrossing& a, const BoundaryCrossing& b) {
                          return a.parameter < b.parameter;
                      });
+    enterFirst(crossings);
     return crossings;
 }
 

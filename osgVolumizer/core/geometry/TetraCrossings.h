@@ -73,9 +73,9 @@ struct BoundaryCrossing
 };
 
 /// The boundary faces (of one tetrahedron only, see findAdjacency()) that a segment goes through,
-/// from its start to its end. Which side of an edge it passes is decided without rounding, so that
-/// of two faces that share an edge one is crossed. Faces that it only runs along are not. Expects a
-/// valid set. Cost O(tetrahedra).
+/// from its start to its end. Which side of an edge it passes is decided without rounding, and of
+/// an edge that it meets, so that it enters as often as it leaves. Faces that it only runs along
+/// are not. Expects a valid set. Cost O(tetrahedra).
 OSGVOLUMIZER_CORE_EXPORT std::vector<BoundaryCrossing>
 boundaryCrossings(const TetraSet& set, const glm::dvec3& start, const glm::dvec3& end);
 

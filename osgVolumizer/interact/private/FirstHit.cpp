@@ -60,12 +60,18 @@ bool forSteps(const CellPart& part, bool middles, F&& f)
     return true;
 }
 
-// Whether a trilinear cell shows anything: its values are between those of its corners.
+// What trilinear values of a cell are within.
+core::ValueRange cornerRange(const CellValues& values)
+{
+    const auto ends = std::minmax_element(values.corner, values.corner + 8);
+    return {*ends.first, *ends.second};
+}
+
 bool cellShows(const PickLook& look, const CellValues& values)
 {
     if (look.before || values.interpolation != A::LINEAR) return true;
-    const auto ends = std::minmax_element(values.corner, values.corner + 8);
-    return look.maximumOpacity(*ends.first, *ends.second) > 0.0;
+    const core::ValueRange range = cornerRange(values);
+    return look.maximumOpacity(range.low, range.high) > 0.0;
 }
 
 SeenPlace seenAt(const Span& span, double parameter)
@@ -137,6 +143,7 @@ public:
     }
     void look(const CellPart& part, const Span& span)
     {
+        if (part.values.interpolation == A::LINEAR && !canImprove(cornerRange(part.values))) return;
         const double before = _best;
         double at = 0.0, width = 0.0;
         const auto take = [&](double t, double value, double step) {
