@@ -46,6 +46,13 @@ public:
         if (!_data) _data = make();
         return _data;
     }
+    /// Forgets it; whoever holds it keeps it.
+    void clear()
+    {
+        osg::ref_ptr<RenderData> old; // goes without the lock
+        std::lock_guard<std::mutex> lock(_mutex);
+        old.swap(_data);
+    }
     void resizeGLObjectBuffers(unsigned int maximum)
     {
         if (const osg::ref_ptr<RenderData> data = get()) data->resizeGLObjectBuffers(maximum);

@@ -110,14 +110,18 @@ bool GridReader::knownRange(std::int64_t index, core::ValueRange& range) const
 
 GridReader::Loaded& GridReader::find(const glm::ivec3& cell)
 {
-    if (_last < _loaded.size() && contains(_loaded[_last].place.box, cell)) return _loaded[_last];
-    for (_last = 0; _last < _loaded.size(); ++_last)
-        if (contains(_loaded[_last].place.box, cell)) return _loaded[_last];
-    Loaded loaded;
-    loaded.place = placeOf(cell);
-    loaded.rangeKnown = knownRange(loaded.place.index, loaded.range);
-    _loaded.push_back(std::move(loaded));
-    return _loaded.back();
+    constexpr std::size_t MANY = 256; // more would be held in memory than the cache may keep
+    if (_last && contains(_last->place.box, cell)) return *_last;
+    const Place place = placeOf(cell);
+    auto found = _loaded.find(place.index);
+    if (found == _loaded.end()) {
+        if (_loaded.size() >= MANY) _loaded.clear();
+        Loaded loaded;
+        loaded.place = place;
+        loaded.rangeKnown = knownRange(place.index, loaded.range);
+        found = _loaded.emplace(place.index, std::move(loaded)).first;
+    }
+    return *(_last = &found->second);
 }
 
 const SampleChunk& GridReader::chunkOf(Loaded& loaded)

@@ -3,6 +3,7 @@
 #include "SampleCache.h"
 
 #include <functional>
+#include <unordered_map>
 #include <vector>
 
 namespace osgVolumizer {
@@ -16,6 +17,8 @@ class GridReader
 public:
     /// \param wide filters touch a sample more on each side of a cell
     GridReader(const Voxels& voxels, int level, int step, bool wide);
+    GridReader(const GridReader&) = delete;
+    GridReader& operator=(const GridReader&) = delete;
 
     glm::ivec3 size() const { return _size; }
     /// voxel = spacing * grid + offset.
@@ -77,8 +80,8 @@ private:
     bool _failed = false;
     double _spacing = 1.0, _offset = 0.0;
     glm::ivec3 _size{1}, _count{1};
-    std::vector<Loaded> _loaded; ///< few: those along a ray
-    std::size_t _last = 0;
+    std::unordered_map<std::int64_t, Loaded> _loaded; ///< by index; few
+    Loaded* _last = nullptr;                          ///< cells mostly have one neighbour's
 };
 
 } // namespace picking
