@@ -4,10 +4,8 @@
 #include "../core/Export.h"
 
 #include <osg/Drawable>
-#include <osg/Matrixd>
 #include <osg/Node>
 #include <osg/Vec3d>
-#include <osg/observer_ptr>
 #include <osg/ref_ptr>
 
 #include <cstdint>
@@ -25,7 +23,8 @@ class Camera;
 ///   - MAXIMUM and MINIMUM: the first place of that value, where its opacity is that of a pick;
 ///   - AVERAGE and SUM: likewise, the middle of what of the volume is on the segment.
 /// Where the opacity does not get there nothing is found, though a tint may be seen. A volume that
-/// paints others is not found. Places are good to a tenth of a sample.
+/// paints others is not found. Holes count as what is drawn of them: the lowest value of the range,
+/// or nothing where there are only holes. Places are good to a tenth of a sample.
 ///
 /// OSG's own intersectors find volumes by it: osgUtil::LineSegmentIntersector, RayIntersector,
 /// PolytopeIntersector (the nearest sample's cell inside that shows anything; to a cell) and groups
