@@ -192,6 +192,10 @@ std::vector<Property> makeProperties()
                             "TimeRate", "rate", "time steps a second", core::FINITE)),
         sinceVersion(5, flag<&A::getTimeBlending, &A::setTimeBlending>(
                             "TimeBlending", "blending", "of values between time steps")),
+        sinceVersion(6, number<&A::getPickOpacity, &A::setPickOpacity>(
+                            "PickOpacity", "pick",
+                            "opacity in front of a place where a click finds the volume",
+                            core::PICK_OPACITY)),
     };
 }
 

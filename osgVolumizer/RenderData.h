@@ -24,8 +24,8 @@ protected:
 };
 
 /// Where an object keeps its RenderData: a private member `_renderData` with RenderDataAccess as a
-/// friend, which is the renderer's. The object knows nothing of what is in it. Thread safe. A copy
-/// of the object has none of the original's.
+/// friend, which is the renderer's; likewise `_pickData`, which is for picking. The object knows
+/// nothing of what is in it. Thread safe. A copy of the object has none of the original's.
 class RenderDataSlot
 {
 public:
@@ -45,6 +45,13 @@ public:
         std::lock_guard<std::mutex> lock(_mutex);
         if (!_data) _data = make();
         return _data;
+    }
+    /// Forgets it; whoever holds it keeps it.
+    void clear()
+    {
+        osg::ref_ptr<RenderData> old; // goes without the lock
+        std::lock_guard<std::mutex> lock(_mutex);
+        old.swap(_data);
     }
     void resizeGLObjectBuffers(unsigned int maximum)
     {

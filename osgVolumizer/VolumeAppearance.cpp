@@ -39,7 +39,7 @@ VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp&
       _combineRule(o._combineRule), _accumulationBits(o._accumulationBits), _sampling(o._sampling),
       _errorTolerance(o._errorTolerance), _targetFrameTime(o._targetFrameTime),
       _timeStep(o._timeStep), _timeRate(o._timeRate), _timeBlending(o._timeBlending),
-      _opacityUnit(o._opacityUnit)
+      _opacityUnit(o._opacityUnit), _pickOpacity(o._pickOpacity)
 {
 }
 
@@ -190,6 +190,14 @@ ReportedStatus VolumeAppearance::setOpacityUnit(double objectUnits)
     if (!core::LENGTH_OR_NONE.holds(objectUnits))
         return refuse(*this, "opacity unit", objectUnits, core::LENGTH_OR_NONE.expected);
     _opacityUnit = objectUnits;
+    return {};
+}
+
+ReportedStatus VolumeAppearance::setPickOpacity(double opacity)
+{
+    if (!core::PICK_OPACITY.holds(opacity))
+        return refuse(*this, "pick opacity", opacity, core::PICK_OPACITY.expected);
+    _pickOpacity = opacity;
     return {};
 }
 

@@ -228,6 +228,11 @@ public:
     /// The unit in force.
     double getEffectiveOpacityUnit() const;
 
+    /// How opaque what lies in front of a place has to be, that place included, for a pick to find
+    /// the volume there (see interact/Pick.h). Above 0, below 1; default 0.5.
+    ReportedStatus setPickOpacity(double opacity);
+    double getPickOpacity() const { return _pickOpacity; }
+
     /// The settings that a volume is drawn with. They differ from those of the appearance where its
     /// geometry or voxels do not allow these, and where the choice was left to the library.
     struct Settings
@@ -275,7 +280,7 @@ private:
     double _errorTolerance = 0.0, _targetFrameTime = 0.0;
     double _timeStep = 0.0, _timeRate = 0.0;
     bool _timeBlending = false;
-    double _opacityUnit = 0.0;
+    double _opacityUnit = 0.0, _pickOpacity = 0.5;
     mutable RenderDataSlot _renderData; // textures of the table, sampling that was chosen
 };
 

@@ -4,9 +4,12 @@
 #include "core/NumberRule.h"
 #include "core/Text.h"
 #include "private/Flattening.h"
+#include "private/Picker.h"
 #include "private/Renderer.h"
 
+#include <osg/FrameStamp>
 #include <osgUtil/CullVisitor>
+#include <osgUtil/IntersectionVisitor>
 
 #include <atomic>
 #include <cmath>
@@ -22,6 +25,7 @@ struct VolumeGeometry::Private
     TetraSetPtr tetraSet = std::make_shared<const core::TetraSet>();
     std::atomic<unsigned> modifiedCount{0};
     std::atomic<double> slackAngle{0.0};
+    std::atomic<double> shownTime{0.0}; ///< simulation time of the last cull
 };
 
 namespace {
@@ -169,10 +173,16 @@ void VolumeGeometry::accept(osg::NodeVisitor& visitor)
     visitor.pushOntoNodePath(this);
     osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
     Renderer* renderer = getRenderer();
+    const osg::FrameStamp* stamp = visitor.getFrameStamp();
+    if (cullVisitor && stamp) _private->shownTime = stamp->getSimulationTime();
     if (cullVisitor && renderer)
         renderer->cull(*this, *cullVisitor);
     else if (!cullVisitor)
         visitor.apply(static_cast<osg::Drawable&>(*this));
+    Picker* picker = getPicker();
+    if (osgUtil::IntersectionVisitor* picking = visitor.asIntersectionVisitor(); picking && picker)
+        picker->intersect(*this, *picking,
+                          stamp ? stamp->getSimulationTime() : _private->shownTime.load());
     visitor.popFromNodePath();
 }
 

@@ -62,7 +62,8 @@ public:
     ReportedStatus setSlackAngle(double radians);
     double getSlackAngle() const;
 
-    /// A cull registers the volume; osgUtil::Optimizer takes no transform from above it.
+    /// A cull registers the volume; an osgUtil::IntersectionVisitor finds what is seen of it (see
+    /// interact/Pick.h); osgUtil::Optimizer takes no transform from above it.
     void accept(osg::NodeVisitor& visitor) override;
     osg::BoundingBox computeBoundingBox() const override;
     osg::BoundingSphere computeBound() const override;
@@ -77,9 +78,11 @@ protected:
 
 private:
     friend struct RenderDataAccess;
+    friend struct PickDataAccess;
     struct Private;
     std::unique_ptr<Private> _private;
     mutable RenderDataSlot _renderData; // what frames reuse
+    mutable RenderDataSlot _pickData;   // what picks reuse
 };
 
 } // namespace osgVolumizer

@@ -358,6 +358,7 @@ ReportedStatus Voxels::rebuildLayout(const glm::ivec3& brickSize, int overlap,
 void Voxels::forgetBricks()
 {
     _cache.clear();
+    _pickData.clear();
     std::lock_guard<std::mutex> lock(_mutex);
     _bricks.clear();
     _allModified = ++_lastModified;
@@ -366,6 +367,7 @@ void Voxels::forgetBricks()
 
 void Voxels::dirty(std::int64_t brick)
 {
+    if (brick < 0) _pickData.clear();
     std::lock_guard<std::mutex> lock(_mutex);
     if (brick < 0) {
         _cache.clear();

@@ -159,6 +159,7 @@ protected:
 
 private:
     friend struct RenderDataAccess;
+    friend struct PickDataAccess;
     struct Brick; // range and modified count of one brick
     using BrickPtr = std::shared_ptr<Brick>;
 
@@ -197,6 +198,7 @@ private:
 
     mutable BlockCache _cache{CACHE_BYTES};
     mutable RenderDataSlot _renderData; // textures per context
+    mutable RenderDataSlot _pickData;   // samples and their ranges, for picking
     mutable std::atomic<std::uint64_t> _readCount{0};
     std::atomic<unsigned> _layoutCount;
 };

@@ -27,6 +27,9 @@ inline constexpr NumberRule POSITION{-1e18, 1e18, false, "a number from -1e+18 t
 /// entries of a table, in 32-bit floats.
 inline constexpr NumberRule RANGE_WIDTH{1e-30, std::numeric_limits<double>::max(), false,
                                         "a finite width of at least 1e-30"};
+/// Of what a pick has to find: no ray is ever less than 0 or more than 1, nor exactly 1.
+inline constexpr NumberRule PICK_OPACITY{1e-6, 1.0 - 1e-6, false,
+                                         "a number from 1e-06 to 0.999999"};
 /// Coefficients of reflection: eight lights at the bound do not overflow 16-bit floats, which end
 /// at 65504.
 inline constexpr NumberRule COEFFICIENT{0.0, 1e3, false, "a number from 0 to 1000"};

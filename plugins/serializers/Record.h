@@ -49,7 +49,8 @@ public:
     ///    AccumulationBits, ErrorTolerance and TargetFrameTime.
     /// 4: VolumeAppearance has CombineRule, VolumeGeometry SlackAngle.
     /// 5: VolumeAppearance has TimeStep, TimeRate and TimeBlending, Voxels TextureBudget.
-    static constexpr int version = 5;
+    /// 6: VolumeAppearance has PickOpacity.
+    static constexpr int version = 6;
 
     const std::vector<Field>& fields() const { return _fields; }
     void add(std::string name, Field::Value value, std::size_t valuesPerLine = 8)

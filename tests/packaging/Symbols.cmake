@@ -18,7 +18,7 @@ if(count LESS 100)
 endif()
 # Mangled names have the length of a name in front of it.
 foreach(symbol ${exported})
-  if(symbol MATCHES "12osgVolumizer(6render|2io)")
+  if(symbol MATCHES "12osgVolumizer(6render|2io|7picking|6Picker)")
     message(SEND_ERROR "Exported, but no interface: ${symbol}")
   endif()
 endforeach()

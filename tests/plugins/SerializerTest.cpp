@@ -244,6 +244,15 @@ TEST_P(SerializerTest, SeriesAreKeptWithHowTheyArePlayed)
     EXPECT_TRUE(errors().empty()) << errors();
 }
 
+TEST_P(SerializerTest, PickOpacityIsKept)
+{
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    ASSERT_TRUE(a->setPickOpacity(0.05));
+    const auto b = roundTrip(*a);
+    ASSERT_TRUE(b) << errors();
+    EXPECT_EQ(b->getPickOpacity(), 0.05);
+}
+
 // Version 2 had none of these: what is not in the file keeps its default, and nothing is missed.
 TEST_P(SerializerTest, OlderVersionsKeepDefaults)
 {
@@ -253,7 +262,7 @@ TEST_P(SerializerTest, OlderVersionsKeepDefaults)
     a->setShading(true);
     std::string content = write(*a);
     const std::size_t version =
-        content.find("1 5", content.find("Version", content.find("Sampling")));
+        content.find("1 6", content.find("Version", content.find("Sampling")));
     ASSERT_NE(version, std::string::npos);
     content[version + 2] = '2';
     const auto read = SerializerTest::read(content);

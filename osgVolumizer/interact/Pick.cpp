@@ -1,0 +1,123 @@
+#include "Pick.h"
+
+#include "../VolumeAppearance.h"
+#include "../VolumeGeometry.h"
+#include "../core/Text.h"
+#include "private/GlmToOsg.h"
+#include "private/VolumeView.h"
+
+#include <osg/Camera>
+#include <osgUtil/IntersectionVisitor>
+#include <osgUtil/LineSegmentIntersector>
+
+#include <cmath>
+
+namespace osgVolumizer {
+
+namespace {
+
+using picking::toGlm;
+using picking::toOsg;
+
+Status checkPick(const picking::Segment& segment, const PickOptions& options)
+{
+    if (!segment.valid())
+        return {ErrorCode::VALUE_INVALID, "a segment from " + core::formatTriple(segment.start) +
+                                              " to " + core::formatTriple(segment.end) +
+                                              " has no length, or is not finite"};
+    if (!(options.opacity >= 0.0 && options.opacity < 1.0))
+        return {ErrorCode::VALUE_INVALID, "the opacity of a pick is " +
+                                              core::formatNumber(options.opacity) +
+                                              ", expected it to be in [0, 1)"};
+    return {};
+}
+
+PickHit hitOf(const picking::VolumeView& view, picking::ValueField* field,
+              const picking::Segment& segment, const picking::SeenPlace& seen)
+{
+    PickHit hit;
+    hit.ratio = seen.parameter;
+    hit.point = toOsg(segment.at(seen.parameter));
+    hit.normal = toOsg(view.normalAt(field, segment, seen.span, seen.parameter));
+    hit.tetrahedron = seen.span.inTetrahedron ? seen.span.tetrahedron
+                                              : view.region->tetrahedronAt(segment, seen.parameter);
+    if (!field) return hit;
+    hit.voxel = toOsg(seen.span.voxelAt(seen.parameter));
+    const picking::GridLine line(seen.span, field->grid());
+    hit.value = field->dataAt(line.at(seen.parameter), view.look.rgba ? 3 : 0);
+    hit.level = field->level();
+    return hit;
+}
+
+} // namespace
+
+Result<std::optional<PickHit>> pickVolume(const VolumeGeometry& geometry,
+                                          const VolumeAppearance& appearance,
+                                          const osg::Vec3d& start, const osg::Vec3d& end,
+                                          const PickOptions& options)
+{
+    const picking::Segment segment{toGlm(start), toGlm(end)};
+    if (Status status = checkPick(segment, options); !status.ok()) return status;
+    const picking::VolumeView view(geometry, appearance, options.simulationTime);
+    std::optional<PickHit> none;
+    if (!view.region) return none;
+    const std::vector<picking::Span> spans = view.region->spans(segment);
+    if (spans.empty()) return none;
+    const double opacity = options.opacity > 0.0 ? options.opacity : appearance.getPickOpacity();
+    const double units = picking::unitsPerParameter(segment, view.look);
+    for (int level = 0;; ++level) {
+        level = view.levelWithin(spans, options.maximumBytes, level);
+        const auto field = view.fieldOf(level);
+        const picking::SeenPlace seen =
+            picking::findSeenPlace(field.get(), view.look, spans, units, opacity);
+        // Where pages cannot be read, coarser ones are seen.
+        if (field && field->failed() && level + 1 < view.levelCount()) continue;
+        if (!seen.found) return none;
+        return std::optional<PickHit>(hitOf(view, field.get(), segment, seen));
+    }
+}
+
+const VolumeAppearance* appearanceOf(const osg::NodePath& path)
+{
+    for (auto node = path.rbegin(); node != path.rend(); ++node)
+        if (const auto* appearance = dynamic_cast<const VolumeAppearance*>(*node))
+            return appearance;
+    return nullptr;
+}
+
+const VolumeGeometry* geometryOf(const osg::NodePath& path)
+{
+    return path.empty() ? nullptr : dynamic_cast<const VolumeGeometry*>(path.back());
+}
+
+Result<std::optional<PixelPick>> zpick(osg::Camera& camera, double x, double y,
+                                       osg::Node::NodeMask mask)
+{
+    if (!std::isfinite(x) || !std::isfinite(y))
+        return Status(ErrorCode::VALUE_INVALID, "window position " + core::formatNumber(x) + "," +
+                                                    core::formatNumber(y) + " is not finite");
+    const osg::Viewport* viewport = camera.getViewport();
+    if (!viewport) return Status(ErrorCode::VALUE_INVALID, "the camera has no viewport");
+    const osg::Matrixd toWindow = camera.getViewMatrix() * camera.getProjectionMatrix();
+    if (osg::Matrixd inverse; !picking::invert(toWindow, inverse))
+        return Status(ErrorCode::SINGULAR_MATRIX, "the camera's matrices have no inverse");
+    osg::ref_ptr<osgUtil::LineSegmentIntersector> intersector = new osgUtil::LineSegmentIntersector(
+        osgUtil::Intersector::WINDOW, viewport->x() + x, viewport->y() + y);
+    intersector->setIntersectionLimit(osgUtil::Intersector::LIMIT_NEAREST);
+    osgUtil::IntersectionVisitor visitor(intersector);
+    visitor.setTraversalMask(mask);
+    camera.accept(visitor);
+    if (!intersector->containsIntersections()) return std::optional<PixelPick>();
+    const auto first = intersector->getFirstIntersection();
+    PixelPick pick;
+    pick.point = first.getWorldIntersectPoint();
+    pick.normal = first.getWorldIntersectNormal();
+    pick.normal.normalize();
+    pick.ratio = first.ratio;
+    pick.nodePath = first.nodePath;
+    pick.drawable = first.drawable;
+    pick.isVolume = dynamic_cast<const VolumeGeometry*>(first.drawable.get()) != nullptr;
+    return std::optional<PixelPick>(pick);
+}
+
+} // namespace osgVolumizer

@@ -1,0 +1,63 @@
+// The README's sample of picking: as it stands there, and that it does what it says.
+#include "PickOracle.h"
+
+#include <osgVolumizer/interact/Probe.h>
+
+#include <osgViewer/Viewer>
+
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <sstream>
+
+namespace ReadmeSampleTest {
+
+using namespace osgVolumizer::test;
+
+namespace {
+
+// clang-format off
+void pickAndProbe(osgViewer::Viewer& viewer, double x, double y, const osg::Vec3d& eye)
+{
+const auto seen = osgVolumizer::zpick(*viewer.getCamera(), x, y); // pixels from the lower left corner
+if (!seen.ok() || !seen->has_value()) return;                     // nothing there
+const osg::Vec3d point = (*seen)->point;                          // world frame
+if (!(*seen)->isVolume) return;                                   // a surface in front of all volumes
+const auto line = osgVolumizer::probe((*seen)->nodePath, eye, eye + (point - eye) * 2.0);
+for (const osgVolumizer::ProbedVoxel& voxel : line.value.voxels)
+    std::cout << voxel.distance << ": " << voxel.raw << ", " << voxel.transmittance << std::endl;
+} // end
+// clang-format on
+
+std::string textOf(const std::string& file)
+{
+    std::ifstream stream(OSGVOLUMIZER_SOURCE_DIR "/" + file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(ReadmeSample, IsThisOne)
+{
+    const std::string own = textOf("tests/interact/ReadmeSampleTest.cpp");
+    const std::size_t begin = own.find("const auto seen"), end = own.find("} // end");
+    ASSERT_LT(begin, end);
+    EXPECT_NE(textOf("README.md").find(own.substr(begin, end - begin)), std::string::npos);
+}
+
+TEST(ReadmeSample, ListsVoxels)
+{
+    osgViewer::Viewer viewer;
+    viewer.setSceneData(makeVolume(makeBlob(glm::ivec3(32), 6.0)));
+    const osg::Vec3d eye(15.5, -100, 15.5);
+    viewer.getCamera()->setViewport(0, 0, 200, 100);
+    viewer.getCamera()->setProjectionMatrixAsPerspective(30.0, 2.0, 10.0, 500.0);
+    viewer.getCamera()->setViewMatrixAsLookAt(eye, {15.5, 15.5, 15.5}, {0, 0, 1});
+    std::ostringstream text;
+    std::streambuf* const before = std::cout.rdbuf(text.rdbuf());
+    pickAndProbe(viewer, 100, 50, eye);
+    std::cout.rdbuf(before);
+    EXPECT_NE(text.str().find("100.25: "), std::string::npos) << text.str();
+}
+
+} // namespace
+
+} // namespace ReadmeSampleTest
