@@ -3,14 +3,19 @@
 #include "../VolumeAppearance.h"
 #include "../VolumeGeometry.h"
 #include "../core/Text.h"
+#include "../render/context/ClipPlanes.h"
 #include "private/GlmToOsg.h"
 #include "private/VolumeView.h"
 
 #include <osg/Camera>
+#include <osg/ClipNode>
+#include <osg/Transform>
 #include <osgUtil/IntersectionVisitor>
 #include <osgUtil/LineSegmentIntersector>
 
 #include <cmath>
+#include <cstddef>
+#include <map>
 
 namespace osgVolumizer {
 
@@ -61,7 +66,7 @@ Result<std::optional<PickHit>> pickVolume(const VolumeGeometry& geometry,
     const picking::VolumeView view(geometry, appearance, options.simulationTime);
     std::optional<PickHit> none;
     if (!view.region) return none;
-    const std::vector<picking::Span> spans = view.region->spans(segment);
+    const std::vector<picking::Span> spans = view.region->spans(segment, options.clipPlanes);
     if (spans.empty()) return none;
     const double opacity = options.opacity > 0.0 ? options.opacity : appearance.getPickOpacity();
     const double units = picking::unitsPerParameter(segment, view.look);
@@ -75,6 +80,46 @@ Result<std::optional<PickHit>> pickVolume(const VolumeGeometry& geometry,
         if (!seen.found) return none;
         return std::optional<PickHit>(hitOf(view, field.get(), segment, seen));
     }
+}
+
+namespace {
+
+// Whether a mode is on at the end of a path.
+bool isOn(const osg::NodePath& path, GLenum mode)
+{
+    using osg::StateAttribute;
+    bool on = false, overridden = false;
+    for (const osg::Node* node : path) {
+        const osg::StateSet* set = node->getStateSet();
+        const StateAttribute::GLModeValue value =
+            set ? set->getMode(mode) : StateAttribute::GLModeValue(StateAttribute::INHERIT);
+        if (value & StateAttribute::INHERIT) continue;
+        if (overridden && !(value & StateAttribute::PROTECTED)) continue;
+        on = (value & StateAttribute::ON) != 0;
+        overridden = (value & StateAttribute::OVERRIDE) != 0;
+    }
+    return on;
+}
+
+} // namespace
+
+std::vector<osg::Vec4d> clipPlanesAbove(const osg::NodePath& path)
+{
+    std::map<unsigned, osg::Vec4d> byNumber; // the last one of a number counts
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const auto* node = dynamic_cast<const osg::ClipNode*>(path[i]);
+        if (!node || node->getReferenceFrame() != osg::ClipNode::RELATIVE_RF) continue;
+        const osg::NodePath below(path.begin() + std::ptrdiff_t(i) + 1, path.end());
+        const osg::Matrixd toNode = osg::computeLocalToWorld(below);
+        for (const auto& plane : node->getClipPlaneList()) {
+            const core::Plane made = render::transformedPlane(plane->getClipPlane(), toNode);
+            byNumber[plane->getClipPlaneNum()] = osg::Vec4d(toOsg(made.normal), made.offset);
+        }
+    }
+    std::vector<osg::Vec4d> planes;
+    for (const auto& plane : byNumber)
+        if (isOn(path, GL_CLIP_PLANE0 + plane.first)) planes.push_back(plane.second);
+    return planes;
 }
 
 const VolumeAppearance* appearanceOf(const osg::NodePath& path)

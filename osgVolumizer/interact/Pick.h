@@ -6,10 +6,12 @@
 #include <osg/Drawable>
 #include <osg/Node>
 #include <osg/Vec3d>
+#include <osg/Vec4d>
 #include <osg/ref_ptr>
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace osg {
 class Camera;
@@ -30,8 +32,8 @@ class Camera;
 /// PolytopeIntersector (the nearest sample's cell inside that shows anything; to a cell) and groups
 /// of them, and with them everything that is built on osgUtil::IntersectionVisitor. An intersection
 /// has the volume as its drawable, the number of the tetrahedron as its primitive, and the
-/// gradient, towards the eye, as its normal. A visitor without a frame stamp sees the time step of
-/// the last frame.
+/// gradient, towards the eye, as its normal. ClipNodes above a volume cut it (OSG's own geometry is
+/// found behind them). A visitor without a frame stamp sees the time step of the last frame.
 ///
 /// What is kept for it, besides memory of the source: bricks and pages that were read last, 256 MiB
 /// of each Voxels, and 8 bytes for each 512 of their samples. Everything here may be called from
@@ -50,6 +52,8 @@ struct PickOptions
     double opacity = 0.0; ///< that has to be reached; 0: the appearance's
     std::int64_t maximumBytes = DEFAULT_BYTES;
     double simulationTime = 0.0; ///< seconds; says which time step is seen
+    /// Half-spaces (object frame) outside which nothing is seen: x, y, z, w times (point, 1) >= 0.
+    std::vector<osg::Vec4d> clipPlanes;
 };
 
 /// Where a segment meets what is seen of a volume. The object frame is that of the geometry.
@@ -89,6 +93,10 @@ struct PixelPick
 OSGVOLUMIZER_EXPORT Result<std::optional<PixelPick>> zpick(osg::Camera& camera, double x, double y,
                                                            osg::Node::NodeMask mask = ~0u);
 
+/// The planes of the ClipNodes in a path that are on at its end, in the frame of that: what
+/// intersectors cut volumes by. Planes with a place in the eye frame are none of a scene, and left
+/// out.
+OSGVOLUMIZER_EXPORT std::vector<osg::Vec4d> clipPlanesAbove(const osg::NodePath& path);
 /// The nearest VolumeAppearance in a path, from its end; null without one.
 OSGVOLUMIZER_EXPORT const VolumeAppearance* appearanceOf(const osg::NodePath& path);
 /// The volume that a path ends with; null where it ends with none.

@@ -121,7 +121,7 @@ Result<VoxelProbe> probe(const VolumeGeometry& geometry, const VolumeAppearance&
                       "VolumeAppearance \"" + appearance.getName() + "\" has no voxels to probe");
     VoxelProbe result;
     if (!view.region) return result;
-    std::vector<Span> spans = view.region->spans(segment);
+    std::vector<Span> spans = view.region->spans(segment, options.clipPlanes);
     if (Status status = keepBrick(*view.voxels, options.brick, spans); !status.ok()) return status;
     for (int level = 0;; ++level) {
         level = view.levelWithin(spans, options.maximumBytes, level, true);
@@ -148,8 +148,11 @@ Result<VoxelProbe> probe(const osg::NodePath& path, const osg::Vec3d& worldStart
     if (!picking::invert(toWorld, toObject))
         return Status(ErrorCode::SINGULAR_MATRIX,
                       "the transforms above a volume to be probed have no inverse");
+    ProbeOptions cut = options;
+    for (const osg::Vec4d& plane : clipPlanesAbove(path))
+        cut.clipPlanes.push_back(plane);
     Result<VoxelProbe> found =
-        probe(*geometry, *appearance, worldStart * toObject, worldEnd * toObject, options);
+        probe(*geometry, *appearance, worldStart * toObject, worldEnd * toObject, cut);
     for (ProbedVoxel& voxel : found.value.voxels)
         voxel.world = voxel.object * toWorld;
     return found;

@@ -35,6 +35,7 @@ struct ProbeOptions
     std::int64_t brick = -1; ///< that alone is looked at, of Voxels::getLayout(); -1: all
     std::int64_t maximumBytes = PickOptions::DEFAULT_BYTES; ///< as in PickOptions
     double simulationTime = 0.0;                            ///< seconds
+    std::vector<osg::Vec4d> clipPlanes;                     ///< as in PickOptions
 };
 
 /// The voxels of a volume along a segment (object frame), inside its region; shown or not. None
@@ -45,8 +46,8 @@ OSGVOLUMIZER_EXPORT Result<VoxelProbe> probe(const VolumeGeometry& geometry,
                                              const osg::Vec3d& start, const osg::Vec3d& end,
                                              const ProbeOptions& options = {});
 /// The same of a segment in the world frame and a path down to a VolumeGeometry below a
-/// VolumeAppearance, such as an intersection has. VALUE_INVALID for any other path;
-/// SINGULAR_MATRIX where its transforms have no inverse.
+/// VolumeAppearance, such as an intersection has; ClipNodes in it cut, too. VALUE_INVALID for any
+/// other path; SINGULAR_MATRIX where its transforms have no inverse.
 OSGVOLUMIZER_EXPORT Result<VoxelProbe> probe(const osg::NodePath& path,
                                              const osg::Vec3d& worldStart,
                                              const osg::Vec3d& worldEnd,

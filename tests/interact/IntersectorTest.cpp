@@ -3,6 +3,9 @@
 
 #include <support/Shapes.h>
 
+#include <osgVolumizer/interact/Probe.h>
+
+#include <osg/ClipNode>
 #include <osg/ComputeBoundsVisitor>
 #include <osg/MatrixTransform>
 #include <osgGA/OrbitManipulator>
@@ -112,6 +115,35 @@ TEST(Intersectors, SeeThroughTransforms)
         osg::Vec3d normal = hits.begin()->getWorldIntersectNormal();
         EXPECT_LT(normal * (end - start), 0.0);
     }
+}
+
+TEST(Intersectors, SeeWhatClipNodesLeave)
+{
+    osg::ref_ptr<osg::ClipNode> clip = new osg::ClipNode;
+    clip->addClipPlane(new osg::ClipPlane(2, osg::Vec4d(0, 1, 0, -12))); // y > 12
+    clip->addChild(below(osg::Matrixd::translate(0, 3, 0), ball()));
+    const osg::Matrixd turned = osg::Matrixd::rotate(0.4, osg::Vec3d(1, 1, 0));
+    const auto root = below(turned, clip);
+    const auto hits = [&] {
+        return intersect(*root,
+                         new LineSegmentIntersector((MIDDLE - osg::Vec3d(0, 100, 0)) * turned,
+                                                    (MIDDLE + osg::Vec3d(0, 100, 0)) * turned));
+    };
+    ASSERT_EQ(hits().size(), 1u);
+    // In the ball, whose front is cut off.
+    expectNear(hits().begin()->localIntersectionPoint, {15.5, 9.0, 15.5}, NEAR);
+    const osg::NodePath path = hits().begin()->nodePath;
+    ASSERT_EQ(clipPlanesAbove(path).size(), 1u);
+    const auto voxels = probe(path, (MIDDLE - osg::Vec3d(0, 100, 0)) * turned,
+                              (MIDDLE + osg::Vec3d(0, 100, 0)) * turned);
+    ASSERT_TRUE(voxels.ok());
+    EXPECT_EQ(voxels->voxels.front().index.y(), 9);
+    // Off, it cuts nothing; beyond the volume, everything.
+    clip->getOrCreateStateSet()->setMode(GL_CLIP_PLANE2, osg::StateAttribute::OFF);
+    expectNear(hits().begin()->localIntersectionPoint, {15.5, 5.5, 15.5}, NEAR);
+    clip->getOrCreateStateSet()->setMode(GL_CLIP_PLANE2, osg::StateAttribute::ON);
+    clip->getClipPlane(0)->setClipPlane(0, 1, 0, -60);
+    EXPECT_TRUE(hits().empty());
 }
 
 TEST(Intersectors, WorkInAllFrames)

@@ -65,7 +65,7 @@ TEST(PickWork, SkipsWhatIsEmpty)
     appearance->setLookupTable(makeTable({{0.2, {1, 1, 1, 0.0}}, {1.0, {1, 1, 1, 0.5}}}));
     const picking::VolumeView view(geometryBelow(*appearance), *appearance, 0.0);
     const picking::Segment segment{{60, 62, -10}, {64, 63, 150}};
-    const auto spans = view.region->spans(segment);
+    const auto spans = view.region->spans(segment, {});
     ASSERT_EQ(spans.size(), 1u);
     const auto field = view.fieldOf(0);
     int cells = 0;

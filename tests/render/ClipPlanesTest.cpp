@@ -175,6 +175,17 @@ TEST_F(ClipPlanes, OnlyThoseThatAreOnCut)
     const FloatImage half =
         support::renderScene(cutOut(volumeOf(A::SLABS), {0, 0, 0, 12.5, 24, 24}), view());
     EXPECT_LT(difference(support::renderScene(own, view()), half), 1e-5);
+    // That is where its vertices are, whatever the spacing of its voxels.
+    const osg::ref_ptr<A> spaced = makeVolume(makeVoxels(glm::ivec3(49), bumps));
+    ASSERT_TRUE(spaced->getVoxels()->setSpacing({0.5, 0.5, 0.5}));
+    spaced->setLookupTable(volumeOf(A::SLABS)->getLookupTable());
+    const auto cutAt = [&](osg::StateSet* set, const osg::BoundingBoxd& box) {
+        cutOut(spaced, box);
+        spaced->setStateSet(set);
+        return support::renderScene(spaced, view());
+    };
+    const osg::BoundingBoxd all24(0, 0, 0, 24, 24, 24), left(0, 0, 0, 12.5, 24, 24);
+    EXPECT_LT(difference(cutAt(own->getStateSet(), all24), cutAt(nullptr, left)), 1e-5);
 }
 
 // Two volumes in one place, each with a half of its own.

@@ -27,8 +27,9 @@ void setFog(StateSet& set, unsigned value)
 {
     osg::ref_ptr<osg::Fog> fog = new osg::Fog;
     fog->setMode(osg::Fog::LINEAR);
-    fog->setStart(50.0f);
-    fog->setEnd(150.0f);
+    // So gradual that the depth of a volume is that of a sheet.
+    fog->setStart(-6000.0f);
+    fog->setEnd(6200.0f);
     fog->setColor(osg::Vec4(1.0f, 0.0f, 0.0f, 1.0f));
     set.setAttributeAndModes(fog, value);
 }

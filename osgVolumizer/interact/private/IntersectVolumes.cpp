@@ -44,6 +44,7 @@ struct Visited
     {
         PickOptions options;
         options.simulationTime = simulationTime;
+        options.clipPlanes = clipPlanesAbove(visitor.getNodePath());
         return pickVolume(geometry, appearance, start, end, options).value;
     }
     template <class Hit>
@@ -116,6 +117,8 @@ void intersectPolytope(osgUtil::PolytopeIntersector& polytope, const Visited& vo
     std::vector<core::Plane> planes;
     for (const osg::Plane& plane : polytope.getPolytope().getPlaneList())
         planes.push_back(planeOf(plane));
+    for (const osg::Vec4d& plane : clipPlanesAbove(volume.visitor.getNodePath()))
+        planes.push_back({{plane[0], plane[1], plane[2]}, plane[3]});
     const core::Plane reference = planeOf(polytope.getReferencePlane());
     if (planes.empty() || !isFinite(reference) ||
         !std::all_of(planes.begin(), planes.end(), isFinite))

@@ -89,11 +89,14 @@ std::vector<core::TetraCrossings::Crossing> PickRegion::crossings(const Segment&
     return _crossings.find(toFrame(segment.start), toFrame(segment.end));
 }
 
-std::vector<Span> PickRegion::spans(const Segment& segment) const
+std::vector<Span> PickRegion::spans(const Segment& segment,
+                                    const std::vector<osg::Vec4d>& clipPlanes) const
 {
-    // Half-spaces that hide parts of a volume, such as clip planes in the object frame, are to
-    // narrow this: core::cutSegment(plane, segment.start, segment.end, begin, finish).
     double begin = 0.0, finish = 1.0;
+    for (const osg::Vec4d& plane : clipPlanes)
+        if (!core::cutSegment({{plane[0], plane[1], plane[2]}, plane[3]}, segment.start,
+                              segment.end, begin, finish))
+            return {};
     const glm::dvec3 start = toFrame(segment.start), end = toFrame(segment.end);
     if (_prepared->region && !hasColors()) return convexSpan(start, end, begin, finish);
     std::vector<Span> spans;

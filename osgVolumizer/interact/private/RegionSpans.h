@@ -55,7 +55,9 @@ public:
 
     /// The parts of a segment inside the region and the voxels, in their order; they do not
     /// overlap.
-    std::vector<Span> spans(const Segment& segment) const;
+    /// \param clipPlanes see PickOptions
+    std::vector<Span> spans(const Segment& segment,
+                            const std::vector<osg::Vec4d>& clipPlanes) const;
     /// The tetrahedron at a place of a segment.
     std::uint32_t tetrahedronAt(const Segment& segment, double parameter) const;
 

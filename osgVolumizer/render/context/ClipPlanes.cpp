@@ -12,10 +12,7 @@
 namespace osgVolumizer {
 namespace render {
 
-namespace {
-
-// The plane in a frame from which `toPlane` leads to the plane's own.
-core::Plane transformed(const osg::Vec4d& plane, const osg::Matrixd& toPlane)
+core::Plane transformedPlane(const osg::Vec4d& plane, const osg::Matrixd& toPlane)
 {
     double v[4];
     for (int row = 0; row < 4; ++row)
@@ -32,18 +29,17 @@ core::Plane transformed(const osg::Vec4d& plane, const osg::Matrixd& toPlane)
     return result;
 }
 
-} // namespace
-
 std::vector<core::Plane> clipPlanesOf(const osgUtil::StateGraph* graph, osgUtil::RenderStage& stage,
-                                      const osg::Matrixd& leafToEye)
+                                      const osg::Matrixd& frameToLeaf,
+                                      const osg::Matrixd& frameToEye)
 {
     std::map<unsigned, core::Plane> byNumber;
     for (const auto& positioned : positionedAttributes<osg::ClipPlane>(stage))
-        byNumber[positioned.first->getClipPlaneNum()] = transformed(
-            positioned.first->getClipPlane(), leafToEye * osg::Matrixd::inverse(positioned.second));
+        byNumber[positioned.first->getClipPlaneNum()] =
+            transformedPlane(positioned.first->getClipPlane(),
+                             frameToEye * osg::Matrixd::inverse(positioned.second));
     for (const auto* plane : effectiveClipPlanes(graph))
-        byNumber[plane->getClipPlaneNum()] =
-            transformed(plane->getClipPlane(), osg::Matrixd::identity());
+        byNumber[plane->getClipPlaneNum()] = transformedPlane(plane->getClipPlane(), frameToLeaf);
     std::vector<core::Plane> planes;
     for (const auto& plane : byNumber)
         if (isOn(graph, GL_CLIP_PLANE0 + plane.first, false)) planes.push_back(plane.second);

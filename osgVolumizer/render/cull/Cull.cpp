@@ -131,7 +131,7 @@ std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
         toOsg(toGlm(*visitor.getModelViewMatrix()) * volume->prepared->frameToObject));
     volume->clipPlanes =
         clipPlanesOf(visitor.getCurrentStateGraph(), *visitor.getCurrentRenderBin()->getStage(),
-                     *volume->frameToEye);
+                     toOsg(volume->prepared->frameToObject), *volume->frameToEye);
     TableTexture table;
     if (voxels) volume->steps = timeStepsOf(appearance, visitor.getFrameStamp());
     if (voxels) table = chooseSampling(*volume, visitor);
