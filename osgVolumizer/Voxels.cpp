@@ -67,6 +67,17 @@ int significantComponent(const VoxelSource::Description& d)
     return d.components == 4 ? 3 : 0;
 }
 
+// Paged voxels are drawn from their pages, which have no partial ones.
+Result<core::BrickLayout> makeLayout(const glm::ivec3& size, const glm::ivec3& brickSize,
+                                     int overlap, core::PartialBricks partial,
+                                     const core::BrickTree& tree)
+{
+    const Result<core::BrickLayout> layout =
+        core::BrickLayout::create(size, brickSize, overlap, partial);
+    if (!layout.ok() || tree.levelCount() == 0) return layout;
+    return core::BrickLayout::create(size, brickSize, overlap);
+}
+
 } // namespace
 
 Voxels::Voxels() : _layoutCount(nextLayoutCount()) {}
@@ -79,8 +90,8 @@ Voxels::Voxels(VoxelSource* source) : Voxels()
 Voxels::Voxels(const Voxels& o, const osg::CopyOp& op)
     : osg::Object(o, op),
       _source(dynamic_cast<VoxelSource*>(op(static_cast<const osg::Object*>(o._source.get())))),
-      _description(o._description), _brickSize(o._brickSize), _partialBricks(o._partialBricks), _overlap(o._overlap),
-      _layout(o._layout), _tree(o._tree), _stepCount(o._stepCount),
+      _description(o._description), _brickSize(o._brickSize), _partialBricks(o._partialBricks),
+      _overlap(o._overlap), _layout(o._layout), _tree(o._tree), _stepCount(o._stepCount),
       _textureBudget(o._textureBudget), _fileName(o._fileName), _filePath(o._filePath),
       _fileOptions(o._fileOptions), _layoutCount(nextLayoutCount())
 {
@@ -102,12 +113,12 @@ ReportedStatus Voxels::setSource(VoxelSource* source)
         description = source->describe();
         if (Status status = description.validate(); !status.ok())
             return reported(std::move(status));
-        Result<core::BrickLayout> made =
-            core::BrickLayout::create(description.size, _brickSize, _overlap, _partialBricks);
-        if (!made.ok()) return reported(made.status);
-        layout = *made;
         if (Status status = makeTree(source, _overlap, tree); !status.ok())
             return reported(std::move(status));
+        const Result<core::BrickLayout> made =
+            makeLayout(description.size, _brickSize, _overlap, _partialBricks, tree);
+        if (!made.ok()) return reported(made.status);
+        layout = *made;
     }
     _source = keep;
     _description = description;
@@ -340,12 +351,11 @@ ReportedStatus Voxels::rebuildLayout(const glm::ivec3& brickSize, int overlap,
     // Without voxels, a volume of one sample stands in, so that the numbers are checked just the
     // same.
     const glm::ivec3 size = valid() ? _description.size : glm::ivec3(1);
-    const Result<core::BrickLayout> layout =
-        core::BrickLayout::create(size, brickSize, overlap, partial);
-    if (!layout.ok()) return reported(layout.status);
     core::BrickTree tree;
     if (Status status = makeTree(_source.get(), overlap, tree); !status.ok())
         return reported(std::move(status));
+    const Result<core::BrickLayout> layout = makeLayout(size, brickSize, overlap, partial, tree);
+    if (!layout.ok()) return reported(layout.status);
     _brickSize = brickSize;
     _overlap = overlap;
     _partialBricks = partial;

@@ -178,9 +178,13 @@ std::int64_t countSamples(const Voxels& voxels, std::int64_t brick, double low, 
     const glm::ivec3 coordinates = layout.coordinates(brick);
     const core::VoxelView view{block.data, voxels.getType(), voxels.getComponents(),
                                samples.size()};
-    glm::ivec3 first(0), p;
+    glm::ivec3 first(0), p; // not of the brick before
     for (int a = 0; a < 3; ++a)
-        if (coordinates[a] > 0) first[a] = layout.overlap();
+        if (coordinates[a] > 0) {
+            glm::ivec3 before = coordinates;
+            --before[a];
+            first[a] = layout.brick(layout.index(before)).samples.max[a] - samples.min[a];
+        }
     std::int64_t count = 0;
     for (p.z = first.z; p.z < view.size.z; ++p.z)
         for (p.y = first.y; p.y < view.size.y; ++p.y)

@@ -109,8 +109,11 @@ std::vector<osg::Vec4d> clipPlanesAbove(const osg::NodePath& path)
     for (std::size_t i = 0; i < path.size(); ++i) {
         const auto* node = dynamic_cast<const osg::ClipNode*>(path[i]);
         if (!node || node->getReferenceFrame() != osg::ClipNode::RELATIVE_RF) continue;
-        const osg::NodePath below(path.begin() + std::ptrdiff_t(i) + 1, path.end());
-        const osg::Matrixd toNode = osg::computeLocalToWorld(below);
+        // By way of the world: below there may be transforms of no reference to what is above.
+        const osg::NodePath above(path.begin(), path.begin() + std::ptrdiff_t(i) + 1);
+        osg::Matrixd fromWorld;
+        if (!picking::invert(osg::computeLocalToWorld(above), fromWorld)) continue;
+        const osg::Matrixd toNode = osg::computeLocalToWorld(path) * fromWorld;
         for (const auto& plane : node->getClipPlaneList()) {
             const core::Plane made = render::transformedPlane(plane->getClipPlane(), toNode);
             byNumber[plane->getClipPlaneNum()] = osg::Vec4d(toOsg(made.normal), made.offset);

@@ -5,6 +5,7 @@
 #include <osgVolumizer/core/Text.h>
 #include <osgVolumizer/core/voxels/BrickTree.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 

@@ -154,6 +154,10 @@ Result<Dataset> inspect(hid_t file, const std::string& path)
         return Status(ErrorCode::FILE_UNREADABLE,
                       "dataset " + oneLine(path) + " cannot be read" + session.reason());
     const Handle properties(H5Dget_create_plist(id), H5Pclose), type(H5Dget_type(id), H5Tclose);
+    // What lies in other files may be no files, and nobody would see that they are cut short.
+    if (H5Pget_external_count(properties) > 0 || H5Pget_layout(properties) == H5D_VIRTUAL)
+        return Status(ErrorCode::NOT_SUPPORTED,
+                      "dataset " + oneLine(path) + " has its values in other files");
     if (Status status = checkFilters(properties, path); !status.ok()) return status;
     if (Status status = checkPieces(properties, H5Tget_size(type), path); !status.ok())
         return status;

@@ -7,6 +7,7 @@
 #include <support/GLTest.h>
 #include <support/Precision.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace FogTest {

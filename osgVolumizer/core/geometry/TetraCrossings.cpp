@@ -18,7 +18,7 @@ namespace core {
 namespace {
 
 constexpr double WEIGHT_SLACK = 1e-12;
-constexpr std::uint32_t LEAF_SIZE = 4;
+constexpr std::uint32_t CROSSING_LEAF_SIZE = 4;
 
 // The part of [begin, end] where a linear function, a at 0 and b at 1, is not below -slack.
 bool keepPositive(double a, double b, double slack, double& begin, double& end)
@@ -86,7 +86,7 @@ std::uint32_t TetraCrossings::build(const std::vector<Box3d>& boxes, std::uint32
         node.bounds.expand(boxes[_order[i]].max);
     }
     _nodes.push_back(node);
-    if (end - begin <= LEAF_SIZE) return number;
+    if (end - begin <= CROSSING_LEAF_SIZE) return number;
     const glm::dvec3 size = node.bounds.size();
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const std::uint32_t middle = begin + (end - begin) / 2;

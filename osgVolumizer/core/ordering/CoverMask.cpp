@@ -55,8 +55,10 @@ void CoverMask::add(const Box3d& box)
 {
     Projected projected;
     if (!project(box, projected)) return;
-    const int firstRow = int(std::ceil(std::max(projected.min.y, 0.0)));
-    const int lastRow = int(std::floor(std::min(projected.max.y, _pixels.y - 1.0)));
+    const double lowest = std::max(projected.min.y, 0.0);
+    const double highest = std::min(projected.max.y, _pixels.y - 1.0);
+    if (!(lowest <= highest)) return;
+    const int firstRow = int(std::ceil(lowest)), lastRow = int(std::floor(highest));
     if (firstRow > lastRow) return;
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::vector<glm::dvec2> spans(std::size_t(lastRow - firstRow) + 1, {infinity, -infinity});
@@ -65,8 +67,10 @@ void CoverMask::add(const Box3d& box)
             if (corner & axis) continue;
             glm::dvec2 low = projected.corners[corner], high = projected.corners[corner | axis];
             if (low.y > high.y) std::swap(low, high);
-            const int first = std::max(firstRow, int(std::ceil(std::max(low.y, -1.0))));
-            const int last = std::min(lastRow, int(std::floor(std::min(high.y, double(lastRow)))));
+            const int first =
+                int(std::ceil(std::clamp(low.y, double(firstRow), double(lastRow) + 1.0)));
+            const int last =
+                int(std::floor(std::clamp(high.y, double(firstRow) - 1.0, double(lastRow))));
             for (int y = first; y <= last; ++y) {
                 glm::dvec2& span = spans[std::size_t(y - firstRow)];
                 const double t = high.y > low.y ? (y - low.y) / (high.y - low.y) : 0.0;

@@ -128,7 +128,7 @@ const SampleChunk& GridReader::chunkOf(Loaded& loaded)
 {
     if (!loaded.chunk) {
         loaded.chunk = _cache->get(_voxels, loaded.place.index, _step);
-        _failed = _failed || !loaded.chunk->hasSamples();
+        _failed = _failed || !loaded.chunk->wasRead();
     }
     return *loaded.chunk;
 }

@@ -47,7 +47,8 @@ ChunkPtr SampleCache::get(const Voxels& voxels, std::int64_t index, int step)
         }
     }
     const ChunkPtr chunk = readChunk(voxels, index, step); // others may pick meanwhile
-    keep(key, {chunk, layout, modified, 0});
+    // A page that could not be read is asked for again.
+    if (!voxels.isPaged() || chunk->wasRead()) keep(key, {chunk, layout, modified, 0});
     return chunk;
 }
 

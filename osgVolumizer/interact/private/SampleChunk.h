@@ -24,7 +24,9 @@ public:
     SampleChunk(VoxelBlock block, const core::VoxelView& view, const core::Box3i& samples,
                 int component, double lowest, std::size_t ownBytes);
 
-    /// False where the source failed, or there are holes only: nothing is shown.
+    /// False where the source failed.
+    bool wasRead() const { return _raw.data != nullptr; }
+    /// False there, and where there are holes only: nothing is shown.
     bool hasSamples() const { return _view.data != nullptr; }
     const core::Box3i& samples() const { return _samples; }
     /// Of samples and of what holes are filled in.

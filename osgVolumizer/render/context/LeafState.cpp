@@ -94,6 +94,10 @@ std::optional<FogAbove> fogAbove(const osgUtil::StateGraph* graph)
     constexpr double LOG2_E = 1.4426950408889634;
     const auto* fog = effective<osg::Fog>(graph, StateAttribute::FOG);
     if (!fog || !isOn(graph, GL_FOG, false)) return std::nullopt;
+    // OpenGL refuses such.
+    if (!(fog->getDensity() >= 0.0f) || !std::isfinite(fog->getDensity() + fog->getEnd()) ||
+        !std::isfinite(fog->getStart()))
+        return std::nullopt;
     FogAbove made;
     made.color = {fog->getColor().r(), fog->getColor().g(), fog->getColor().b()};
     const double density = static_cast<double>(fog->getDensity());
@@ -120,7 +124,7 @@ std::optional<FogAbove> fogAbove(const osgUtil::StateGraph* graph)
 float FogAbove::share(double depth) const
 {
     const double sum = glm::dot(glm::dvec3(rates), glm::dvec3(1.0, depth, depth * depth));
-    return static_cast<float>(linear ? std::clamp(sum, 0.0, 1.0) : std::exp2(-sum));
+    return static_cast<float>(std::clamp(linear ? sum : std::exp2(-sum), 0.0, 1.0));
 }
 
 StateAbove stateAbove(const osgUtil::StateGraph* graph)

@@ -21,10 +21,10 @@ osg::BoundingBox objectBounds(const core::Box3d& box, const glm::dmat4& frameToO
 /// What decides which values of a volume are shown.
 OccupancyQuery occupancyQuery(const VolumeInstance& volume, const Voxels& voxels);
 
-/// The number of the frame that is culled; 0 where the visitor knows none.
 /// Whether a box of the voxel frame lies wholly outside a volume's clip planes.
 bool isClipped(const VolumeInstance& volume, const core::Box3d& box);
 
+/// The number of the frame that is culled; 0 where the visitor knows none.
 unsigned frameOf(const osgUtil::CullVisitor& visitor);
 
 /// Whether so many cells of the selected bricks are empty that leaping over them pays.

@@ -29,7 +29,7 @@ bool isOpaque(const CoveredPages::Page& page)
 } // namespace
 
 OpaqueDepth::OpaqueDepth(const VolumeLook& look, const osg::Vec2d& range)
-    : _function(look.table.function), _range(range)
+    : _function(look.table.function), _range(range), _entry(1.0 / std::max(look.table.count - 1, 1))
 {
     // No vector becomes longer by more than this.
     const glm::dmat3 unitsToFrame = glm::inverse(look.frameToUnits);
@@ -48,8 +48,8 @@ double OpaqueDepth::depth(double opacity) const
 double OpaqueDepth::of(const core::ValueRange& values) const
 {
     const double width = _range.y() - _range.x();
-    return depth(_function->minimumOpacity((values.low - _range.x()) / width,
-                                           (values.high - _range.x()) / width));
+    return depth(_function->minimumOpacity((values.low - _range.x()) / width - _entry,
+                                           (values.high - _range.x()) / width + _entry));
 }
 
 double OpaqueDepth::least() const
@@ -59,8 +59,9 @@ double OpaqueDepth::least() const
 }
 
 CoveredPages::CoveredPages(const core::BrickTree& tree, const glm::dvec4& eyeVoxel,
-                           core::CoverMask mask, Describe describe)
-    : _tree(tree), _eye(eyeVoxel), _mask(std::move(mask)), _describe(std::move(describe))
+                           core::CoverMask mask, std::int64_t most, Describe describe)
+    : _tree(tree), _eye(eyeVoxel), _mask(std::move(mask)), _left(most),
+      _describe(std::move(describe))
 {
 }
 
@@ -68,6 +69,13 @@ std::unordered_set<std::int64_t> CoveredPages::find()
 {
     visit(_tree.roots(_eye));
     return std::move(_covered);
+}
+
+const std::optional<CoveredPages::Page>& CoveredPages::describe(std::int64_t page)
+{
+    const auto known = _known.find(page);
+    return known != _known.end() ? known->second
+                                 : _known.emplace(page, _describe(page)).first->second;
 }
 
 void CoveredPages::visit(const std::vector<std::int64_t>& farToNear)
@@ -78,7 +86,8 @@ void CoveredPages::visit(const std::vector<std::int64_t>& farToNear)
 
 void CoveredPages::visit(std::int64_t index)
 {
-    const std::optional<Page> page = _describe(index);
+    if (--_left < 0) return;
+    const std::optional<Page> page = describe(index);
     if (!page) return;
     if (_mask.covers(page->box)) {
         _covered.insert(index);
@@ -102,7 +111,7 @@ void CoveredPages::cover(const Page& page)
                                         : page.box.max[axis] < brick.clipBox.max[axis];
             const bool inside = other[axis] >= 0 && other[axis] < _tree.count(brick.level)[axis];
             const std::optional<Page> neighbour =
-                inside && !isCut ? _describe(_tree.index(brick.level, other)) : std::nullopt;
+                inside && !isCut ? describe(_tree.index(brick.level, other)) : std::nullopt;
             if (neighbour && isOpaque(*neighbour)) continue;
             (side < 0 ? box.min : box.max)[axis] -= side * *page.opaqueDepth;
         }

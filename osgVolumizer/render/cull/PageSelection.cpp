@@ -44,6 +44,8 @@ PageSelection::PageSelection(VolumeInstance& volume, const Voxels& voxels, const
     if (volume.look->features.slab && volume.prepared->voxelFrame && !view.frustum) {
         _toClip = *volume.frameToEye * *visitor.getProjectionMatrix();
         _known = pages->lastTest(volume.viewId, _frame);
+        // What was hidden under other planes need not be.
+        if (_known && _known->planes() != volume.look->planes) _known.reset();
         _hasOpaque = pages->hadOpaque(volume.viewId);
     }
     const glm::dmat2x3 edges = pixelEdges(view.toEye, 1.0, visitor);
@@ -77,7 +79,8 @@ void PageSelection::draw()
     _volume.steps = _steps;
     _volume.emptyBricks += _empty;
     if (_volume.look->features.slab && _volume.prepared->voxelFrame) {
-        _test = std::make_shared<VisibilityTest>(_frame, _toClip, _volume.rayDistance == 1.0);
+        _test = std::make_shared<VisibilityTest>(_frame, _toClip, _volume.rayDistance == 1.0,
+                                                 _volume.look->planes);
         _pages->addTest(_volume.viewId, _test);
     }
     for (std::size_t i = 0; i < _rootCount; ++i)
@@ -112,6 +115,8 @@ bool PageSelection::canCover() const
         type != VoxelType::HALF && type != VoxelType::FLOAT32 && type != VoxelType::FLOAT64;
     const osg::Viewport* viewport = _visitor.getViewport();
     return features.slab && _volume.prepared->voxelFrame && features.planeCount == 0 &&
+           !features.cubic && // which overshoots its samples
+
            features.rayFunction == VolumeAppearance::COMPOSITE && _voxels.getComponents() == 1 &&
            integers && _volume.above.isUsual() && viewport && viewport->width() >= 1.0 &&
            viewport->height() >= 1.0;
@@ -120,8 +125,15 @@ bool PageSelection::canCover() const
 void PageSelection::findCovered()
 {
     if (!canCover()) return;
+    const ProgramFeatures& features = _volume.look->features;
     const OpaqueDepth opaqueDepth(*_volume.look, _voxels.getRange());
     if (opaqueDepth.least() > _tree.step()) return;
+    // Nor where the source knows no ranges.
+    const std::vector<std::int64_t> roots = _tree.roots(_eye);
+    if (std::none_of(roots.begin(), roots.end(), [this](std::int64_t root) {
+            return _voxels.getPageRange(root, _steps.first).has_value();
+        }))
+        return;
     const glm::dmat4 toClip =
         _volume.above.toUsualClip * toGlm(*_visitor.getProjectionMatrix()) * _view.toEye;
     const osg::Viewport& viewport = *_visitor.getViewport();
@@ -130,10 +142,15 @@ void PageSelection::findCovered()
         const std::optional<Node> node = make(index);
         if (!node || node->box.empty()) return std::nullopt;
         std::optional<double> depth;
-        if (!node->range.empty()) depth = opaqueDepth.of(node->range);
+        if (!node->range.empty())
+            depth = std::max(opaqueDepth.of(node->range), sampleDistance(*node));
         return CoveredPages::Page{node->brick, node->box, depth, isTooCoarse(*node)};
     };
-    _covered = CoveredPages(_tree, _eye, mask, describe).find();
+    // As many as there is room for, and what they lie in.
+    const double pageBytes = std::pow(double(_tree.step()), 3.0) *
+                             double(texelFormat(_voxels, features.gradientTexture).texelBytes());
+    const auto most = std::int64_t(2.0 * roomForTextures() / pageBytes) + 64;
+    _covered = CoveredPages(_tree, _eye, mask, most, describe).find();
 }
 
 // None of what is outside the view. What shows nothing has an empty box.
@@ -212,13 +229,27 @@ bool PageSelection::isEmpty(Node& node) const
            (all.empty() || !showsValues(_voxels, _query, all.low, all.high));
 }
 
-// Splits the page whose samples are furthest apart on the screen, as long as there is room.
-void PageSelection::refine()
+double PageSelection::roomForTextures() const
 {
     const double all = double(getPagingBudget().textureBytes) /
                        double(Pages::viewCount(_frame, *_pages, _volume.viewId));
     const auto own = double(_voxels.getTextureBudget());
-    const double room = SHARE_OF_A_FRAME * (own > 0.0 ? std::min(own, all) : all);
+    return SHARE_OF_A_FRAME * (own > 0.0 ? std::min(own, all) : all);
+}
+
+// Voxels between samples of a ray through a page, at most.
+double PageSelection::sampleDistance(const Node& node) const
+{
+    constexpr double OBLIQUE = 2.0; // a ray's length to its depth, as far as that counts
+    const glm::dvec3& period = _volume.sampling.periodVoxel;
+    return OBLIQUE * std::max(_volume.look->voxelsPerSample,
+                              node.brick.spacing * std::max({period.x, period.y, period.z}));
+}
+
+// Splits the page whose samples are furthest apart on the screen, as long as there is room.
+void PageSelection::refine()
+{
+    const double room = roomForTextures();
     std::int64_t bytes = 0;
     std::priority_queue<std::pair<double, std::size_t>> worst;
     const auto consider = [&](std::size_t i) {

@@ -101,6 +101,8 @@ private:
     std::int64_t memoryBytes(const Node& node) const;
 
     std::optional<Node> make(std::int64_t index);
+    double roomForTextures() const; ///< bytes, in one frame
+    double sampleDistance(const Node& node) const;
     bool canCover() const;
     void findCovered();
     void add(std::int64_t index, std::int64_t parent);

@@ -2,10 +2,14 @@
 
 #include <osg/Matrixd>
 
+#include <glm/vec4.hpp>
+
 #include <atomic>
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 namespace osgVolumizer {
 namespace render {
@@ -23,13 +27,16 @@ public:
     };
 
     /// \param toClip where the volume is in the view \param exact a ray for each pixel
-    VisibilityTest(unsigned frame, const osg::Matrixd& toClip, bool exact)
-        : _frame(frame), _toClip(toClip), _exact(exact)
+    /// \param planes that cut the volume
+    VisibilityTest(unsigned frame, const osg::Matrixd& toClip, bool exact,
+                   std::vector<glm::vec4> planes)
+        : _frame(frame), _toClip(toClip), _exact(exact), _planes(std::move(planes))
     {
     }
     unsigned frame() const { return _frame; }
     const osg::Matrixd& toClip() const { return _toClip; }
     bool isExact() const { return _exact; }
+    const std::vector<glm::vec4>& planes() const { return _planes; }
 
     /// Tells that the frame had opaque geometry, before which nothing is found out.
     void setOpaque() { _opaque = true; }
@@ -57,6 +64,7 @@ private:
     const unsigned _frame;
     const osg::Matrixd _toClip;
     const bool _exact;
+    const std::vector<glm::vec4> _planes;
     std::atomic<bool> _opaque{false}, _closed{false};
     mutable std::mutex _mutex; ///< of what follows
     std::map<std::int64_t, bool> _visible;

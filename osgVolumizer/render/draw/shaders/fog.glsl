@@ -10,7 +10,7 @@ vec3 fogged(vec3 color, float t)
 {
     float depth = fogDepth + t;
     float share = dot(fogRates, vec3(1.0, depth, depth * depth));
-    return mix(fogColor, color, fogIsLinear ? clamp(share, 0.0, 1.0) : exp2(-share));
+    return mix(fogColor, color, clamp(fogIsLinear ? share : exp2(-share), 0.0, 1.0));
 }
 #else
 #define fogged(color, t) color
