@@ -65,6 +65,9 @@ TEST(Measure, VolumeOfValues)
     EXPECT_DOUBLE_EQ(*valueVolume(*voxels, 4.0, 6.0), 3 * 21 * 21);
     ASSERT_TRUE(voxels->setBrickSize({8, 9, 10}).ok()); // no sample counts twice
     EXPECT_DOUBLE_EQ(*valueVolume(*voxels, 4.0, 6.0), 3 * 21 * 21);
+    ASSERT_TRUE(voxels->setPartialBricks(core::PartialBricks::AVERAGE_UP).ok());
+    EXPECT_DOUBLE_EQ(*valueVolume(*voxels, 4.0, 6.0), 3 * 21 * 21);
+    EXPECT_DOUBLE_EQ(*valueVolume(*voxels, 18.0, 20.0), 3 * 21 * 21); // in bricks moved back
     const auto part = VolumeGeometry::createBox(osg::BoundingBoxd(0, -0.5, -1, 100, 4.5, 100));
     EXPECT_DOUBLE_EQ(*valueVolume(*voxels, 4.0, 6.0, part), 3 * 5 * 21);
     EXPECT_DOUBLE_EQ(

@@ -100,6 +100,32 @@ TEST(PagedPick, SkipsPagesThatTheSourceKnowsToBeEmpty)
     EXPECT_EQ(readsOf(*source), before);
 }
 
+// Pages of holes only are no failure.
+TEST(PagedPick, SeesThroughPagesOfHoles)
+{
+    osg::ref_ptr<FormulaSource> source = new FormulaSource(
+        SIZE, [](const glm::dvec3& p) { return p.z < 20.0 ? std::nan("") : blob(p); });
+    const auto found = pickLine(*volumeOf(source), {{31.0, 30.0, -50.0}, {31.0, 30.0, 150.0}});
+    ASSERT_TRUE(found.has_value());
+    EXPECT_EQ(found->level, 0);
+    const auto whole =
+        pickLine(*volumeOf(osg::ref_ptr<FormulaSource>(new FormulaSource(SIZE, blob))),
+                 {{31.0, 30.0, -50.0}, {31.0, 30.0, 150.0}});
+    ASSERT_TRUE(whole.has_value());
+    EXPECT_NEAR(found->point.z(), whole->point.z(), 0.1);
+}
+
+// What failed once is asked for again.
+TEST(PagedPick, SeesTheFinestOnceTheDiskIsBack)
+{
+    osg::ref_ptr<FormulaSource> source = new FormulaSource(SIZE, blob);
+    const auto appearance = volumeOf(source);
+    source->failBelow = 1;
+    ASSERT_EQ(pickLine(*appearance, {{31.0, 30.0, -50.0}, {31.0, 30.0, 150.0}})->level, 1);
+    source->failBelow = 0;
+    EXPECT_EQ(pickLine(*appearance, {{31.0, 30.0, -50.0}, {31.0, 30.0, 150.0}})->level, 0);
+}
+
 TEST(PagedPick, SeesCoarserPagesWhereADiskFails)
 {
     osg::ref_ptr<FormulaSource> source = new FormulaSource(SIZE, blob);

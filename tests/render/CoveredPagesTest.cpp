@@ -10,6 +10,11 @@
 
 #include <support/GLTest.h>
 
+#include <array>
+#include <map>
+#include <memory>
+#include <mutex>
+
 namespace CoveredPagesTest {
 
 using namespace osgVolumizer;
@@ -40,18 +45,30 @@ osg::ref_ptr<FormulaSource> sourceOf(VoxelType type = VoxelType::UINT8)
 {
     const osg::ref_ptr<FormulaSource> source = new FormulaSource(SIZE, hills, type);
     const double top = type == VoxelType::UINT8 ? 255.0 : 1.0;
-    source->range = [top](int level, const core::Box3i& samples) {
+    using Range = std::pair<double, double>;
+    using Key = std::array<int, 7>;
+    struct Known
+    {
+        std::mutex mutex;
+        std::map<Key, Range> ranges;
+    };
+    source->range = [top, known = std::make_shared<Known>()](int level, const core::Box3i& s) {
+        std::lock_guard<std::mutex> lock(known->mutex);
+        const Key key{level, s.min.x, s.min.y, s.min.z, s.max.x, s.max.y, s.max.z};
+        const auto found = known->ranges.find(key);
+        if (found != known->ranges.end()) return found->second;
         const double spacing = 1 << level;
-        std::pair<double, double> range(1.0, 0.0);
-        for (int z = samples.min.z; z <= samples.max.z; ++z)
-            for (int y = samples.min.y; y <= samples.max.y; ++y)
-                for (int x = samples.min.x; x <= samples.max.x; ++x) {
+        Range range(1.0, 0.0);
+        for (int z = s.min.z; z <= s.max.z; ++z)
+            for (int y = s.min.y; y <= s.max.y; ++y)
+                for (int x = s.min.x; x <= s.max.x; ++x) {
                     const double v = hills(spacing * (glm::dvec3(x, y, z)));
                     range = {std::min(range.first, v), std::max(range.second, v)};
                 }
         const double margin = 0.06 * spacing; // more than they change by to either side
-        return std::make_pair(std::floor(top * std::max(range.first - margin, 0.0)),
-                              std::ceil(top * std::min(range.second + margin, 1.0)));
+        range = {std::floor(top * std::max(range.first - margin, 0.0)),
+                 std::ceil(top * std::min(range.second + margin, 1.0))};
+        return known->ranges[key] = range;
     };
     return source;
 }

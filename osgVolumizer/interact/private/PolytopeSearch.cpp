@@ -14,6 +14,8 @@ namespace picking {
 
 namespace {
 
+using A = VolumeAppearance;
+
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
 /// A convex part of the region within which the voxel coordinate is affine.
@@ -254,7 +256,6 @@ private:
     }
     bool showsCell(const CellValues& values) const
     {
-        using A = VolumeAppearance;
         const int count = values.interpolation == A::NEAREST  ? 1
                           : values.interpolation == A::LINEAR ? 8
                                                               : 64;
