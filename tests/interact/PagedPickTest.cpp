@@ -104,7 +104,7 @@ TEST(PagedPick, SkipsPagesThatTheSourceKnowsToBeEmpty)
 TEST(PagedPick, SeesThroughPagesOfHoles)
 {
     osg::ref_ptr<FormulaSource> source = new FormulaSource(
-        SIZE, [](const glm::dvec3& p) { return p.z < 20.0 ? std::nan("") : blob(p); });
+        SIZE, [](const glm::dvec3& p) { return p.z < 17.5 ? std::nan("") : blob(p); });
     const auto found = pickLine(*volumeOf(source), {{31.0, 30.0, -50.0}, {31.0, 30.0, 150.0}});
     ASSERT_TRUE(found.has_value());
     EXPECT_EQ(found->level, 0);
