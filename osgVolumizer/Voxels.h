@@ -74,9 +74,9 @@ public:
     /// frames.
     ReportedStatus setBrickSize(const osg::Vec3i& samples);
     osg::Vec3i getBrickSize() const;
-    /// What is done where the volume's size is no multiple of the bricks': by default the last brick
-    /// of an axis is smaller. With TRUNCATE less than all of the volume is drawn. Of no effect on
-    /// paged voxels. Refused and to be called as setBrickSize().
+    /// What is done where the volume's size is no multiple of the bricks': by default the last
+    /// brick of an axis is smaller. With TRUNCATE less than all of the volume is drawn. Of no
+    /// effect on paged voxels. Refused and to be called as setBrickSize().
     ReportedStatus setPartialBricks(core::PartialBricks partial);
     core::PartialBricks getPartialBricks() const { return _partialBricks; }
     /// Samples shared by neighbours: 1 for linear filtering, 3 for cubic.

@@ -57,8 +57,7 @@ TEST(CoverMask, CoversThePixelsWhoseRaysMeetTheBox)
     };
     int covered = 0;
     for (int trial = 0; trial < 40; ++trial) {
-        const glm::dmat4 toClip =
-            view(glm::dvec3(0.0, -9.0, 0.0) + point(2.0), point(1.0));
+        const glm::dmat4 toClip = view(glm::dvec3(0.0, -9.0, 0.0) + point(2.0), point(1.0));
         Box3d box;
         box.expand(point(2.0));
         box.expand(point(2.0));
@@ -80,10 +79,16 @@ TEST(CoverMask, CoversThePixelsWhoseRaysMeetTheBox)
                 covered += inner;
                 // Where its neighbours are covered too, so is it.
                 bool all = inner;
-                for (const glm::ivec2 d : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1},
-                                           glm::ivec2(1, 1), {-1, -1}, {1, -1}, {-1, 1}}) {
-                    const glm::ivec2 other = glm::clamp(glm::ivec2(x, y) + d, glm::ivec2(0),
-                                                        PIXELS - 1);
+                for (const glm::ivec2 d : {glm::ivec2(1, 0),
+                                           {-1, 0},
+                                           {0, 1},
+                                           {0, -1},
+                                           glm::ivec2(1, 1),
+                                           {-1, -1},
+                                           {1, -1},
+                                           {-1, 1}}) {
+                    const glm::ivec2 other =
+                        glm::clamp(glm::ivec2(x, y) + d, glm::ivec2(0), PIXELS - 1);
                     all = all && meets(toClip, other, grown(box, -1e-9));
                 }
                 if (all) {

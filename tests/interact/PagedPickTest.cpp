@@ -112,7 +112,8 @@ TEST(PagedPick, SeesThroughPagesOfHoles)
         pickLine(*volumeOf(osg::ref_ptr<FormulaSource>(new FormulaSource(SIZE, blob))),
                  {{31.0, 30.0, -50.0}, {31.0, 30.0, 150.0}});
     ASSERT_TRUE(whole.has_value());
-    EXPECT_NEAR(found->point.z(), whole->point.z(), 0.1);
+    // A little of what shows lies in the holes.
+    EXPECT_NEAR(found->point.z(), whole->point.z(), 0.2);
 }
 
 // What failed once is asked for again.
