@@ -2,7 +2,6 @@
 
 #include "Error.h"
 
-#include <osg/GL>
 #include <osg/Vec3i>
 
 #include <cstdint>
@@ -20,8 +19,9 @@ struct BrickParameters
 {
     /// Samples per axis, for Voxels::setBrickSize(): as large as the context and the budget allow.
     osg::Vec3i brickSize;
-    GLenum internalFormat = 0; ///< that the context filters fast, without losing values
-    GLenum format = 0, dataType = 0;
+    /// As OpenGL numbers them: the texture's, that the context filters fast, without losing values,
+    /// and those of what is uploaded.
+    unsigned internalFormat = 0, format = 0, dataType = 0;
     std::int64_t brickBytes = 0; ///< of the texture of such a brick
     std::int64_t brickCount = 0; ///< of those that fit into the budget for textures: see Paging.h
 };

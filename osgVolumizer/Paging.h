@@ -22,7 +22,7 @@ struct PagingBudget
     /// Of their textures, in each context.
     std::int64_t textureBytes = 0;
     /// What a frame may spend on handing pages to a context; or, of slow frames, a tenth of what
-    /// the last one took, up to 50. A page at least, whatever it takes.
+    /// the last one took. A page at least, whatever it takes.
     double uploadMilliseconds = 0.0;
     /// Threads that read; 1 to 64.
     int threads = 0;

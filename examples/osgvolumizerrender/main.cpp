@@ -7,6 +7,7 @@
 #include <support/ReadScene.h>
 #include <support/SceneRenderer.h>
 
+#include <osgVolumizer/Paging.h>
 #include <osgVolumizer/Version.h>
 
 #include <osg/Math>
@@ -79,6 +80,14 @@ void turn(support::SceneRenderer& renderer, const Arguments& arguments,
     renderer.options().view = view;
 }
 
+/// Nobody looks at the frames before the last one: they need not be fast.
+void uploadAtOnce()
+{
+    PagingBudget budget = getPagingBudget();
+    budget.uploadMilliseconds = 1e9;
+    setPagingBudget(budget);
+}
+
 /// Draws until nothing is missing of volumes that are read in the background.
 Status waitForDetail(support::SceneRenderer& renderer, double seconds)
 {
@@ -144,8 +153,14 @@ Status run(const Arguments& arguments)
                       "The line of sight is parallel to the up vector, or one of them is zero.");
     support::SceneRenderer renderer(scene.get(), options);
     Statistics statistics;
+    uploadAtOnce();
     renderer.render();
     statistics.firstFrame = renderer.counters();
+    // What is timed is to be all there.
+    const auto missing = statistics.firstFrame.find("osgVolumizer pages missing");
+    Status detail;
+    if (missing != statistics.firstFrame.end() && missing->second > 0.0)
+        detail = waitForDetail(renderer, arguments.waitSeconds);
     if (arguments.turnDegrees != 0.0) {
         turn(renderer, arguments, scene->getBound(), statistics);
     } else {
@@ -155,7 +170,7 @@ Status run(const Arguments& arguments)
         statistics.latestFrame = renderer.counters();
     }
     if (!renderer.status().ok()) return renderer.status();
-    const Status detail = waitForDetail(renderer, arguments.waitSeconds);
+    if (detail.ok()) detail = waitForDetail(renderer, arguments.waitSeconds);
     statistics.device = renderer.device();
     support::FloatImage image;
     if (!arguments.output.empty()) image = support::renderCoverage(renderer);

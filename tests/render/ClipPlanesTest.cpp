@@ -179,6 +179,7 @@ TEST_F(ClipPlanes, OnlyThoseThatAreOnCut)
     const osg::ref_ptr<A> spaced = makeVolume(makeVoxels(glm::ivec3(49), bumps));
     ASSERT_TRUE(spaced->getVoxels()->setSpacing({0.5, 0.5, 0.5}));
     spaced->setLookupTable(volumeOf(A::SLABS)->getLookupTable());
+    support::filterExactly(*spaced);
     const auto cutAt = [&](osg::StateSet* set, const osg::BoundingBoxd& box) {
         cutOut(spaced, box);
         spaced->setStateSet(set);

@@ -22,7 +22,7 @@ Result<BrickParameters> bestBrickParameters(osg::State& state, const Voxels& vox
     const osg::ref_ptr<osg::Texture3D> texture =
         render::makeVoxelTexture(format, samples, core::sampleCount(samples), limits);
     BrickParameters best;
-    best.internalFormat = static_cast<GLenum>(texture->getInternalFormat());
+    best.internalFormat = static_cast<unsigned>(texture->getInternalFormat());
     best.format = texture->getSourceFormat();
     best.dataType = texture->getSourceType();
     const std::int64_t texelBytes = best.internalFormat == format.internalFormat

@@ -448,12 +448,12 @@ UploadAllowance& UploadAllowance::of(unsigned contextId)
 
 bool UploadAllowance::take(unsigned frame, std::int64_t bytes)
 {
-    constexpr double SHARE = 0.1, MOST = 50.0;
+    constexpr double SHARE = 0.1;
     std::lock_guard<std::mutex> lock(_mutex);
     if (frame != _frame) {
         const double begin = now();
         const double last = frame == _frame + 1 ? 1e3 * (begin - _begin) : 0.0;
-        _allowed = std::max(getPagingBudget().uploadMilliseconds, std::min(SHARE * last, MOST));
+        _allowed = std::max(getPagingBudget().uploadMilliseconds, SHARE * last);
         _frame = frame;
         _begin = begin;
         _taken = 0.0;

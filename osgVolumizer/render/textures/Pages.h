@@ -163,7 +163,7 @@ private:
 };
 
 /// How much a context may be handed in a frame: the bytes that take the budget's milliseconds, as
-/// measured; where frames are slow, a tenth of what they take, up to 50 ms. Thread safe.
+/// measured; where frames are slow, a tenth of what they take. Thread safe.
 class UploadAllowance
 {
 public:
