@@ -136,7 +136,10 @@ TEST_F(Pages, NoFrameWaitsForARead)
     EXPECT_GT(renderer.counters()["osgVolumizer pages missing"], 0.0);
     // The coarse levels come, the finest does not.
     source->openFrom(1);
-    const auto isShown = [](const FloatImage& picture) { return covered(picture) > 1000; };
+    constexpr double pages = 27.0; // of the level above the finest
+    const auto isShown = [&](const FloatImage& picture) {
+        return covered(picture) > 1000 && renderer.counters()["osgVolumizer bricks drawn"] >= pages;
+    };
     const FloatImage coarse = renderUntil(renderer, isShown);
     EXPECT_TRUE(isShown(coarse));
     source->openFrom(0);
