@@ -4,6 +4,8 @@
 #include "../VolumeGeometry.h"
 #include "../core/Text.h"
 #include "../render/context/ClipPlanes.h"
+#include "../render/context/ModeInForce.h"
+#include "../render/volume/NearestAppearance.h"
 #include "private/GlmToOsg.h"
 #include "private/VolumeView.h"
 
@@ -82,27 +84,6 @@ Result<std::optional<PickHit>> pickVolume(const VolumeGeometry& geometry,
     }
 }
 
-namespace {
-
-// Whether a mode is on at the end of a path.
-bool isOn(const osg::NodePath& path, GLenum mode)
-{
-    using osg::StateAttribute;
-    bool on = false, overridden = false;
-    for (const osg::Node* node : path) {
-        const osg::StateSet* set = node->getStateSet();
-        const StateAttribute::GLModeValue value =
-            set ? set->getMode(mode) : StateAttribute::GLModeValue(StateAttribute::INHERIT);
-        if (value & StateAttribute::INHERIT) continue;
-        if (overridden && !(value & StateAttribute::PROTECTED)) continue;
-        on = (value & StateAttribute::ON) != 0;
-        overridden = (value & StateAttribute::OVERRIDE) != 0;
-    }
-    return on;
-}
-
-} // namespace
-
 std::vector<osg::Vec4d> clipPlanesAbove(const osg::NodePath& path)
 {
     std::map<unsigned, osg::Vec4d> byNumber; // the last one of a number counts
@@ -119,18 +100,18 @@ std::vector<osg::Vec4d> clipPlanesAbove(const osg::NodePath& path)
             byNumber[plane->getClipPlaneNum()] = osg::Vec4d(toOsg(made.normal), made.offset);
         }
     }
+    std::vector<const osg::StateSet*> sets;
+    for (const osg::Node* node : path)
+        if (node->getStateSet()) sets.push_back(node->getStateSet());
     std::vector<osg::Vec4d> planes;
     for (const auto& plane : byNumber)
-        if (isOn(path, GL_CLIP_PLANE0 + plane.first)) planes.push_back(plane.second);
+        if (render::isOn(sets, GL_CLIP_PLANE0 + plane.first, false)) planes.push_back(plane.second);
     return planes;
 }
 
 const VolumeAppearance* appearanceOf(const osg::NodePath& path)
 {
-    for (auto node = path.rbegin(); node != path.rend(); ++node)
-        if (const auto* appearance = dynamic_cast<const VolumeAppearance*>(*node))
-            return appearance;
-    return nullptr;
+    return render::nearestAppearance(path);
 }
 
 const VolumeGeometry* geometryOf(const osg::NodePath& path)

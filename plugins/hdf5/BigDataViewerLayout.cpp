@@ -79,12 +79,7 @@ Status addMipmaps(hid_t file, int setup, Layout& layout, std::vector<int>& numbe
         const bool said = std::size_t(level) < factors.size();
         const FileLevel made{*size, halvingsBy(layout.description.size, *size,
                                                said ? &factors[std::size_t(level)] : nullptr)};
-        if (made.halvings.x < 0 || made.halvings.y < 0 || made.halvings.z < 0) {
-            layout.notices.push_back(levelNotice(level, *size));
-            continue;
-        }
-        layout.levels.push_back(made);
-        numbers.push_back(level);
+        addLevel(level, made, layout, numbers);
     }
     return {};
 }

@@ -94,12 +94,7 @@ Status addResolutionLevels(hid_t file, int channel, Layout& layout, std::vector<
         FileLevel made{*size, {}};
         for (int axis = 0; axis < 3; ++axis)
             made.halvings[axis] = halvingsOf(layout.description.size[axis], (*size)[axis]);
-        if (made.halvings.x < 0 || made.halvings.y < 0 || made.halvings.z < 0) {
-            layout.notices.push_back(levelNotice(level, *size));
-            continue;
-        }
-        layout.levels.push_back(made);
-        numbers.push_back(level);
+        addLevel(level, made, layout, numbers);
     }
     return {};
 }

@@ -54,10 +54,16 @@ Result<Layout> layoutOf(hid_t file, const Dataset& dataset)
     return layout;
 }
 
-std::string levelNotice(int level, const glm::ivec3& size)
+void addLevel(int number, const FileLevel& level, Layout& layout, std::vector<int>& numbers)
 {
-    return "level " + std::to_string(level) + " is not used, since its " +
-           core::formatTriple(size) + " samples are no half, quarter, ... of the volume's";
+    if (level.halvings.x < 0 || level.halvings.y < 0 || level.halvings.z < 0) {
+        layout.notices.push_back("level " + std::to_string(number) + " is not used, since its " +
+                                 core::formatTriple(level.size) +
+                                 " samples are no half, quarter, ... of the volume's");
+        return;
+    }
+    layout.levels.push_back(level);
+    numbers.push_back(number);
 }
 
 Status checkChannel(const char* what, const std::vector<int>& present, int wanted)

@@ -57,8 +57,8 @@ Result<Layout> findLayout(hid_t file, const Wanted& wanted);
 int halvingsOf(int whole, int size);
 /// The layout of a volume in `dataset`, with its spacing, and nothing else yet.
 Result<Layout> layoutOf(hid_t file, const Dataset& dataset);
-/// A notice that a level of the file is not used.
-std::string levelNotice(int level, const glm::ivec3& size);
+/// Adds a level of the file, by its number, or a notice that it is not used.
+void addLevel(int number, const FileLevel& level, Layout& layout, std::vector<int>& numbers);
 /// Refuses channel `wanted` of those that are there.
 Status checkChannel(const char* what, const std::vector<int>& present, int wanted);
 

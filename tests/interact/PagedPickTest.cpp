@@ -12,6 +12,7 @@ namespace PagedPickTest {
 using namespace osgVolumizer;
 using namespace osgVolumizer::test;
 using paged::FormulaSource;
+using paged::readsOf;
 
 namespace {
 
@@ -30,14 +31,6 @@ osg::ref_ptr<VolumeAppearance> volumeOf(FormulaSource* source)
     osg::ref_ptr<VolumeAppearance> appearance = makeVolume(voxels);
     appearance->setLookupTable(makeTable(SURFACE));
     return appearance;
-}
-
-std::int64_t readsOf(const FormulaSource& source)
-{
-    std::int64_t sum = 0;
-    for (const auto& reads : source.reads)
-        sum += reads;
-    return sum;
 }
 
 TEST(PagedPick, ReadsTheFinestPagesAlongTheLine)

@@ -89,14 +89,6 @@ osg::ref_ptr<A> volumeOf(VoxelSource* source, double opacity)
     return volume;
 }
 
-int readsOf(const FormulaSource& source)
-{
-    int sum = 0;
-    for (const auto& level : source.reads)
-        sum += level;
-    return sum;
-}
-
 class CoveredPages : public support::GLTest
 {
 protected:

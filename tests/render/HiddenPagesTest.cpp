@@ -78,13 +78,6 @@ protected:
             return inARow > 6;
         });
     }
-    static int readsOf(const FormulaSource& source)
-    {
-        int sum = 0;
-        for (const auto& level : source.reads)
-            sum += level;
-        return sum;
-    }
 
     osg::ref_ptr<FormulaSource> source = new FormulaSource(SIZE, waves);
     osg::ref_ptr<A> volume = volumeOf(source);

@@ -148,6 +148,15 @@ private:
     mutable std::atomic<int> _calls{0};
 };
 
+// Of all levels.
+inline int readsOf(const FormulaSource& source)
+{
+    int sum = 0;
+    for (const auto& level : source.reads)
+        sum += level;
+    return sum;
+}
+
 // Smooth, and with something everywhere.
 inline double waves(const glm::dvec3& p)
 {

@@ -1,6 +1,7 @@
 #include "LeafState.h"
 
 #include "Matrices.h"
+#include "ModeInForce.h"
 
 #include <osg/ClipControl>
 #include <osg/ColorMask>
@@ -63,15 +64,7 @@ std::vector<const osg::ClipPlane*> effectiveClipPlanes(const osgUtil::StateGraph
 
 bool isOn(const osgUtil::StateGraph* graph, GLenum mode, bool byDefault)
 {
-    bool on = byDefault, overridden = false;
-    for (const osg::StateSet* set : pathOf(graph)) {
-        const StateAttribute::GLModeValue value = set->getMode(mode);
-        if (value & StateAttribute::INHERIT) continue;
-        if (overridden && !(value & StateAttribute::PROTECTED)) continue;
-        on = (value & StateAttribute::ON) != 0;
-        overridden = (value & StateAttribute::OVERRIDE) != 0;
-    }
-    return on;
+    return isOn(pathOf(graph), mode, byDefault);
 }
 
 bool writesDepth(const osgUtil::StateGraph* graph)

@@ -7,6 +7,7 @@
 #include "../merge/Merger.h"
 #include "../volume/GeometryCache.h"
 #include "../volume/MakeLook.h"
+#include "../volume/NearestAppearance.h"
 #include "../volume/SliceCache.h"
 #include "../volume/VolumeInstance.h"
 #include "AppearanceData.h"
@@ -27,14 +28,6 @@ namespace {
 // Surfaces, and steps of a ray, whatever is asked for: nobody would wait for more, and floats still
 // tell the ends of steps apart.
 constexpr int MOST_SAMPLES = 1 << 16;
-
-const VolumeAppearance* nearestAppearance(const osg::NodePath& path)
-{
-    for (auto node = path.rbegin(); node != path.rend(); ++node)
-        if (const auto* appearance = dynamic_cast<const VolumeAppearance*>(*node))
-            return appearance;
-    return nullptr;
-}
 
 // What osgUtil::CullVisitor does for every drawable before it looks at it: false if the user's
 // callback or the frustum rejects it.
