@@ -33,10 +33,11 @@ VolumeAppearance::VolumeAppearance() : _lookupTable(new LookupTable) {}
 
 VolumeAppearance::VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op)
     : osg::Group(o, op), _voxels(copied(o._voxels, op)), _lookupTable(copied(o._lookupTable, op)),
-      _technique(o._technique), _interpolation(o._interpolation), _lookup(o._lookup),
-      _exactFiltering(o._exactFiltering), _rayFunction(o._rayFunction), _isoValue(o._isoValue),
-      _shading(o._shading), _material(o._material), _gradients(o._gradients),
-      _combineRule(o._combineRule), _accumulationBits(o._accumulationBits), _sampling(o._sampling),
+      _cut(copied(o._cut, op)), _technique(o._technique), _interpolation(o._interpolation),
+      _lookup(o._lookup), _exactFiltering(o._exactFiltering), _rayFunction(o._rayFunction),
+      _isoValue(o._isoValue), _shading(o._shading), _material(o._material),
+      _gradients(o._gradients), _combineRule(o._combineRule),
+      _accumulationBits(o._accumulationBits), _sampling(o._sampling),
       _errorTolerance(o._errorTolerance), _targetFrameTime(o._targetFrameTime),
       _timeStep(o._timeStep), _timeRate(o._timeRate), _timeBlending(o._timeBlending),
       _opacityUnit(o._opacityUnit), _pickOpacity(o._pickOpacity)
@@ -218,6 +219,7 @@ void VolumeAppearance::resizeGLObjectBuffers(unsigned int maximum)
 {
     osg::Group::resizeGLObjectBuffers(maximum);
     if (_voxels) _voxels->resizeGLObjectBuffers(maximum);
+    if (_cut) _cut->resizeGLObjectBuffers(maximum);
     _renderData.resizeGLObjectBuffers(maximum);
     if (Renderer* renderer = getRenderer()) renderer->resizeGLObjectBuffers(maximum);
 }
@@ -226,6 +228,7 @@ void VolumeAppearance::releaseGLObjects(osg::State* state) const
 {
     osg::Group::releaseGLObjects(state);
     if (_voxels) _voxels->releaseGLObjects(state);
+    if (_cut) _cut->releaseGLObjects(state);
     _renderData.releaseGLObjects(state);
     if (Renderer* renderer = getRenderer()) renderer->releaseGLObjects(state);
 }

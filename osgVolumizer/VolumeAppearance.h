@@ -3,6 +3,7 @@
 #include "Error.h"
 #include "LookupTable.h"
 #include "RenderData.h"
+#include "VolumeCut.h"
 #include "Voxels.h"
 #include "core/sampling/Polygonize.h"
 
@@ -111,10 +112,10 @@ public:
     META_Object(osgVolumizer, VolumeAppearance);
 
     VolumeAppearance();
-    /// Shares voxels and table with `o`. With DEEP_COPY_OBJECTS, and so with DEEP_COPY_ALL, it has
-    /// its own of both, down to the samples: to copy a subgraph and share its volumes, leave that
-    /// flag out (`DEEP_COPY_ALL & ~DEEP_COPY_OBJECTS`). As with all that OSG copies, what several
-    /// appearances share becomes one for each.
+    /// Shares voxels, table and cut with `o`. With DEEP_COPY_OBJECTS, and so with DEEP_COPY_ALL, it
+    /// has its own of each, down to the samples: to copy a subgraph and share its volumes, leave
+    /// that flag out (`DEEP_COPY_ALL & ~DEEP_COPY_OBJECTS`). As with all that OSG copies, what
+    /// several appearances share becomes one for each.
     VolumeAppearance(const VolumeAppearance& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
     /// Visits as any group does, but osgUtil::Optimizer takes no transform from above it.
@@ -125,6 +126,11 @@ public:
     /// Never null; setting null restores the default ramp.
     void setLookupTable(LookupTable* table);
     LookupTable* getLookupTable() const { return _lookupTable.get(); }
+
+    /// What is left of the volume; null (default): all of it. No volume that paints others is cut
+    /// by more than planes.
+    void setCut(VolumeCut* cut) { _cut = cut; }
+    VolumeCut* getCut() const { return _cut.get(); }
 
     void setTechnique(Technique technique) { _technique = technique; }
     Technique getTechnique() const { return _technique; }
@@ -265,6 +271,7 @@ private:
 
     osg::ref_ptr<Voxels> _voxels;
     osg::ref_ptr<LookupTable> _lookupTable;
+    osg::ref_ptr<VolumeCut> _cut;
     Technique _technique = AUTOMATIC;
     Interpolation _interpolation = LINEAR;
     Lookup _lookup = AUTOMATIC_LOOKUP;

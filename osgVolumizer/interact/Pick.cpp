@@ -68,7 +68,7 @@ Result<std::optional<PickHit>> pickVolume(const VolumeGeometry& geometry,
     const picking::VolumeView view(geometry, appearance, options.simulationTime);
     std::optional<PickHit> none;
     if (!view.region) return none;
-    const std::vector<picking::Span> spans = view.region->spans(segment, options.clipPlanes);
+    const std::vector<picking::Span> spans = view.spans(segment, options.clipPlanes);
     if (spans.empty()) return none;
     const double opacity = options.opacity > 0.0 ? options.opacity : appearance.getPickOpacity();
     const double units = picking::unitsPerParameter(segment, view.look);

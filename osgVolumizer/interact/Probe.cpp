@@ -121,7 +121,7 @@ Result<VoxelProbe> probe(const VolumeGeometry& geometry, const VolumeAppearance&
                       "VolumeAppearance \"" + appearance.getName() + "\" has no voxels to probe");
     VoxelProbe result;
     if (!view.region) return result;
-    std::vector<Span> spans = view.region->spans(segment, options.clipPlanes);
+    std::vector<Span> spans = view.spans(segment, options.clipPlanes);
     if (Status status = keepBrick(*view.voxels, options.brick, spans); !status.ok()) return status;
     for (int level = 0;; ++level) {
         level = view.levelWithin(spans, options.maximumBytes, level, true);

@@ -50,7 +50,8 @@ public:
     /// 4: VolumeAppearance has CombineRule, VolumeGeometry SlackAngle.
     /// 5: VolumeAppearance has TimeStep, TimeRate and TimeBlending, Voxels TextureBudget.
     /// 6: VolumeAppearance has PickOpacity.
-    static constexpr int version = 6;
+    /// 7: VolumeAppearance has a Cut.
+    static constexpr int version = 7;
 
     const std::vector<Field>& fields() const { return _fields; }
     void add(std::string name, Field::Value value, std::size_t valuesPerLine = 8)

@@ -55,11 +55,15 @@ Status setField(const Record& record, const Property& property, VolumeAppearance
     return Status();
 }
 
+// Of the object that is read: what follows in a binary file depends on it.
+thread_local int versionOfSampling = Record::version;
+
 // Each field by itself: one that is damaged keeps its default, and the first one is reported.
 Status applySampling(Record& record, const osgDB::Options*, VolumeAppearance& appearance)
 {
     int version = Record::version;
     Status status = record.getInteger("Version", 1, Record::version, version);
+    versionOfSampling = version;
     if (!status.ok()) return status;
     for (const Property& property : appearanceProperties()) {
         if (property.since > version) continue;
@@ -109,6 +113,41 @@ bool writeLookupTable(osgDB::OutputStream& os, const VolumeAppearance& appearanc
     return true;
 }
 
+bool checkCut(const VolumeAppearance& appearance)
+{
+    return appearance.getCut() != nullptr;
+}
+
+bool readCut(osgDB::InputStream& is, VolumeAppearance& appearance)
+{
+    appearance.setCut(readObject<VolumeCut>(is).get());
+    return true;
+}
+
+bool writeCut(osgDB::OutputStream& os, const VolumeAppearance& appearance)
+{
+    writeObject(os, appearance.getCut());
+    return true;
+}
+
+/// A property that binary files have from a version of the record before it on.
+class SinceVersion : public osgDB::UserSerializer<VolumeAppearance>
+{
+public:
+    SinceVersion(int version, const char* name, Checker check, Reader read, Writer write)
+        : UserSerializer(name, check, read, write), _version(version)
+    {
+    }
+    bool read(osgDB::InputStream& is, osg::Object& object) override
+    {
+        if (is.isBinary() && versionOfSampling < _version) return true;
+        return UserSerializer::read(is, object);
+    }
+
+private:
+    const int _version;
+};
+
 } // namespace
 } // namespace serializers
 } // namespace osgVolumizer
@@ -120,6 +159,8 @@ REGISTER_OBJECT_WRAPPER(osgVolumizer_VolumeAppearance, new osgVolumizer::VolumeA
                         "osg::Object osg::Node osg::Group osgVolumizer::VolumeAppearance")
 {
     addRecordProperty<MyClass, &applySampling, &fillSampling>(*wrapper, "Sampling");
+    wrapper->addSerializer(new SinceVersion(7, "Cut", &checkCut, &readCut, &writeCut),
+                           osgDB::BaseSerializer::RW_USER);
     ADD_USER_SERIALIZER(Voxels);
     ADD_USER_SERIALIZER(LookupTable);
 }

@@ -524,6 +524,50 @@ TEST_P(SerializerTest, ScenesHoldAllOfThemselvesOnDemand)
     EXPECT_TRUE(errors().empty()) << errors();
 }
 
+TEST_P(SerializerTest, CutsKeepTheirRegions)
+{
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance, b = new VolumeAppearance;
+    osg::ref_ptr<VolumeCut> cut = new VolumeCut;
+    a->setCut(cut);
+    b->setCut(cut); // shared
+    a->addChild(b);
+    core::TriangleMesh mesh;
+    mesh.vertices = {{0.1, 0, 0}, {1, 0, 0}, {0, 1.0 / 3.0, 0}, {0, 0, 1}};
+    mesh.indices = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    const osg::ref_ptr<Voxels> mask = makeVoxels(VoxelType::UINT8, 1, {3, 4, 5});
+    for (const CutRegion& region :
+         {CutRegion::halfSpace({1.0 / 3.0, 0, 2, -0.1}),
+          CutRegion::mask(mask, 2.5, std::numeric_limits<double>::infinity()).complement(),
+          CutRegion::box({0, 1, 2, 3.3, 4, 5}).complement(),
+          CutRegion::sphere({0.1, 0.2, 0.3}, 6.4e6), CutRegion::surface(mesh)})
+        ASSERT_TRUE(cut->addRegion(region));
+    ASSERT_TRUE(cut->setSoftness(0.7));
+    ASSERT_TRUE(cut->setResolution(99));
+    const auto copy = roundTrip(*a);
+    ASSERT_TRUE(copy && copy->getCut()) << errors();
+    const auto* below = dynamic_cast<VolumeAppearance*>(copy->getChild(0));
+    EXPECT_EQ(below->getCut(), copy->getCut());
+    const VolumeCut& read = *copy->getCut();
+    EXPECT_EQ(read.getSoftness(), 0.7);
+    EXPECT_EQ(read.getResolution(), 99);
+    ASSERT_EQ(read.getNumRegions(), 5u);
+    EXPECT_EQ(read.getRegion(0).getPlane(), osg::Vec4d(1.0 / 3.0, 0, 2, -0.1));
+    EXPECT_EQ(read.getRegion(1).getBox()._max, osg::Vec3d(3.3, 4, 5));
+    EXPECT_TRUE(read.getRegion(1).isComplement());
+    EXPECT_EQ(read.getRegion(2).getRadius(), 6.4e6);
+    EXPECT_EQ(read.getRegion(2).getCenter(), osg::Vec3d(0.1, 0.2, 0.3));
+    EXPECT_EQ(read.getRegion(3).getMesh()->vertices, mesh.vertices);
+    EXPECT_EQ(read.getRegion(3).getMesh()->indices, mesh.indices);
+    EXPECT_FALSE(read.getRegion(3).isComplement());
+    const CutRegion& last = read.getRegion(4); // masks come last
+    EXPECT_EQ(last.getKind(), CutRegion::MASK);
+    EXPECT_TRUE(last.isComplement());
+    EXPECT_EQ(last.getMaskLow(), 2.5);
+    EXPECT_EQ(last.getMaskHigh(), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(last.getMask()->getSize(), osg::Vec3i(3, 4, 5));
+    EXPECT_TRUE(errors().empty()) << errors();
+}
+
 TEST_P(SerializerTest, WritingTwiceGivesTheSameFile)
 {
     osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;

@@ -202,8 +202,13 @@ private:
     {
         if (box.empty()) return;
         const core::Box3d voxel = toVoxel(box);
-        if (touches(_piece.planes, voxel))
+        if (touches(_piece.planes, voxel) && isKept(voxel))
             _open.push({boxDistance(_piece.reference, voxel, -1.0), kind, box});
+    }
+    bool isKept(const core::Box3d& voxel) const
+    {
+        return _view.isKept(voxel) &&
+               (glm::length(voxel.size()) > 2.0 || _view.isKeptAt(voxel.center()));
     }
     // Cuts a box along the whole numbers that are multiples of `step` on from its first part.
     void divide(const Item& item)

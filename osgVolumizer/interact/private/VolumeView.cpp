@@ -1,7 +1,10 @@
 #include "VolumeView.h"
 
 #include "../../VolumeGeometry.h"
+#include "../../render/textures/BrickCells.h"
+#include "../../render/volume/CutInForce.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -36,6 +39,44 @@ VolumeView::VolumeView(const VolumeGeometry& geometry, const VolumeAppearance& a
     if (!region) return;
     look = makePickLook(appearance, region->prepared());
     if (voxels) steps = stepsAt(appearance, simulationTime);
+    cut = render::cutInForce(appearance, region->prepared());
+}
+
+std::vector<Span> VolumeView::spans(const Segment& segment,
+                                    const std::vector<osg::Vec4d>& clipPlanes) const
+{
+    const std::vector<Span> whole = region->spans(segment, clipPlanes);
+    if (!cut) return whole;
+    std::vector<Span> left;
+    for (const Span& span : whole) {
+        glm::dvec3 ends[2] = {span.voxelAt(span.begin), span.voxelAt(span.end)};
+        double resolution = 0.01 * glm::length(ends[1] - ends[0]);
+        if (voxels) {
+            const osg::Vec3d s = voxels->getSpacing();
+            resolution = 0.05 * std::min({s.x(), s.y(), s.z()});
+            for (glm::dvec3& end : ends)
+                end = render::boxToCut(*voxels, {end, end}).min;
+        } else {
+            ends[0] = segment.at(span.begin);
+            ends[1] = segment.at(span.end);
+        }
+        for (const auto& part : cut->keptParts(ends[0], ends[1], resolution)) {
+            left.push_back(span);
+            left.back().begin = glm::mix(span.begin, span.end, part.first);
+            left.back().end = glm::mix(span.begin, span.end, part.second);
+        }
+    }
+    return left;
+}
+
+bool VolumeView::isKeptAt(const glm::dvec3& voxel) const
+{
+    return !cut || !voxels || cut->share(render::boxToCut(*voxels, {voxel, voxel}).min) >= 0.5;
+}
+
+bool VolumeView::isKept(const core::Box3d& box) const
+{
+    return !cut || !voxels || !cut->keepsNothingOf(render::boxToCut(*voxels, box));
 }
 
 int VolumeView::levelCount() const

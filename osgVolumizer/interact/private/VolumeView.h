@@ -1,5 +1,6 @@
 #pragma once
 
+#include "../../core/cutting/Cut.h"
 #include "FirstHit.h"
 
 #include <memory>
@@ -14,10 +15,20 @@ struct VolumeView
     std::shared_ptr<const PickRegion> region; ///< null where nothing is drawn
     PickLook look;
     render::TimeSteps steps;
-    osg::ref_ptr<const Voxels> voxels; ///< null without any
+    osg::ref_ptr<const Voxels> voxels;    ///< null without any
+    std::shared_ptr<const core::Cut> cut; ///< null for none
 
     VolumeView(const VolumeGeometry& geometry, const VolumeAppearance& appearance,
                double simulationTime);
+
+    /// The parts of a segment (object frame) in the region of which the cut leaves at least half.
+    /// \param clipPlanes see PickOptions
+    std::vector<Span> spans(const Segment& segment,
+                            const std::vector<osg::Vec4d>& clipPlanes) const;
+    /// Whether the cut leaves anything of a box of the voxel frame, as far as is known.
+    bool isKept(const core::Box3d& box) const;
+    /// Whether at least half is left at a place of the voxel frame.
+    bool isKeptAt(const glm::dvec3& voxel) const;
 
     /// Levels that there are to choose from.
     int levelCount() const;

@@ -16,7 +16,8 @@ enum TextureUnit : unsigned
     UNIT_NEXT_VOXELS,                       ///< of the second of two time steps
     UNIT_FIRST_CAPTURED,                    ///< and the following: captured depths
     UNIT_FIRST_PAINT = UNIT_FIRST_CAPTURED, ///< and the following, in other programs
-    UNIT_COUNT = UNIT_FIRST_CAPTURED + 8
+    UNIT_CUT = UNIT_FIRST_CAPTURED + 8,     ///< beyond the 16 that every context has
+    UNIT_COUNT
 };
 /// Image unit of compute shaders: the last one that every context has, since scenes begin with the
 /// first.

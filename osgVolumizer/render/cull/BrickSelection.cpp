@@ -84,12 +84,15 @@ OccupancyQuery occupancyQuery(const VolumeInstance& volume, const Voxels& voxels
     query.table = &volume.look->table;
     query.cubic = volume.look->features.cubic;
     query.isosurface = rowOf(volume.look->features.rayFunction).showsIsoValueOnly;
+    query.cut = volume.cut;
     query.isoFraction = (volume.appearance->getIsoValue() - range.x()) / (range.y() - range.x());
     return query;
 }
 
 bool isClipped(const VolumeInstance& volume, const core::Box3d& box)
 {
+    if (volume.cut && volume.cut->keepsNothingOf(boxToCut(*volume.appearance->getVoxels(), box)))
+        return true;
     return std::any_of(
         volume.clipPlanes.begin(), volume.clipPlanes.end(), [&box](const core::Plane& plane) {
             return plane.distance(glm::mix(box.min, box.max,

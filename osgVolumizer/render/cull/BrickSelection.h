@@ -21,7 +21,8 @@ osg::BoundingBox objectBounds(const core::Box3d& box, const glm::dmat4& frameToO
 /// What decides which values of a volume are shown.
 OccupancyQuery occupancyQuery(const VolumeInstance& volume, const Voxels& voxels);
 
-/// Whether a box of the voxel frame lies wholly outside a volume's clip planes.
+/// Whether a box of the voxel frame lies wholly outside a volume's clip planes, or what a cut
+/// leaves.
 bool isClipped(const VolumeInstance& volume, const core::Box3d& box);
 
 /// The number of the frame that is culled; 0 where the visitor knows none.

@@ -5,6 +5,7 @@
 #include "../context/Statistics.h"
 #include "../draw/VolumeProgram.h"
 #include "../merge/Merger.h"
+#include "../volume/CutInForce.h"
 #include "../volume/GeometryCache.h"
 #include "../volume/MakeLook.h"
 #include "../volume/NearestAppearance.h"
@@ -125,6 +126,9 @@ std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
     volume->clipPlanes =
         clipPlanesOf(visitor.getCurrentStateGraph(), *visitor.getCurrentRenderBin()->getStage(),
                      toOsg(volume->prepared->frameToObject), *volume->frameToEye);
+    volume->cut = cutInForce(appearance, *volume->prepared);
+    for (const core::Plane& plane : planesOfCut(*volume))
+        volume->clipPlanes.push_back(plane);
     TableTexture table;
     if (voxels) volume->steps = timeStepsOf(appearance, visitor.getFrameStamp());
     if (voxels) table = chooseSampling(*volume, visitor);

@@ -44,8 +44,8 @@ PageSelection::PageSelection(VolumeInstance& volume, const Voxels& voxels, const
     if (volume.look->features.slab && volume.prepared->voxelFrame && !view.frustum) {
         _toClip = *volume.frameToEye * *visitor.getProjectionMatrix();
         _known = pages->lastTest(volume.viewId, _frame);
-        // What was hidden under other planes need not be.
-        if (_known && _known->planes() != volume.look->planes) _known.reset();
+        // What was hidden under other planes, or another cut, need not be.
+        if (_known && !_known->isCutBy(volume.look->planes, volume.look->cut.id)) _known.reset();
         _hasOpaque = pages->hadOpaque(volume.viewId);
     }
     const glm::dmat2x3 edges = pixelEdges(view.toEye, 1.0, visitor);
@@ -80,7 +80,7 @@ void PageSelection::draw()
     _volume.emptyBricks += _empty;
     if (_volume.look->features.slab && _volume.prepared->voxelFrame) {
         _test = std::make_shared<VisibilityTest>(_frame, _toClip, _volume.rayDistance == 1.0,
-                                                 _volume.look->planes);
+                                                 _volume.look->planes, _volume.look->cut.id);
         _pages->addTest(_volume.viewId, _test);
     }
     for (std::size_t i = 0; i < _rootCount; ++i)
@@ -115,7 +115,7 @@ bool PageSelection::canCover() const
         type != VoxelType::HALF && type != VoxelType::FLOAT32 && type != VoxelType::FLOAT64;
     const osg::Viewport* viewport = _visitor.getViewport();
     return features.slab && _volume.prepared->voxelFrame && features.planeCount == 0 &&
-           !features.cubic && // which overshoots its samples
+           !features.cut && !features.cubic && // which overshoots its samples
 
            features.rayFunction == VolumeAppearance::COMPOSITE && _voxels.getComponents() == 1 &&
            integers && _volume.above.isUsual() && viewport && viewport->width() >= 1.0 &&

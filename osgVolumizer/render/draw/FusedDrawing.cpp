@@ -93,12 +93,18 @@ bool setMarched(const FusedDrawing& drawing, const FusedMember& member, const Un
     batch.voxelUnit = units.take();
     batch.cellUnit = features.skipping ? units.take() : 0;
     batch.nextVoxelUnit = features.blendsSteps ? units.take() : 0;
+    const unsigned cut = features.cutField ? units.take() : 0;
     const unsigned paints = units.take(2 * static_cast<unsigned>(features.paintCount));
     if (!units.suffice() || !setMember(drawing, member, uniforms, table, paints)) return false;
     uniforms.set("voxels", static_cast<int>(batch.voxelUnit));
     if (features.blendsSteps) uniforms.set("nextVoxels", static_cast<int>(batch.nextVoxelUnit));
     uniforms.set("lookupTable", static_cast<int>(table));
     if (features.skipping) uniforms.set("cells", static_cast<int>(batch.cellUnit));
+    if (features.cutField) {
+        if (!applyCutField(*drawing.renderInfo.getState(), member.part->look->cut, cut))
+            return false;
+        uniforms.set("cutField", static_cast<int>(cut));
+    }
     if (!drawing.part.features.inOrder && isHomogeneous(member))
         uniforms.set("stepsPerDepth", 0.0f);
     return setBatch(batch, member.batch);
@@ -142,6 +148,9 @@ void drawMembersApart(const FusedDrawing& drawing, const BrickBatch& triangles)
         uniforms.set("frameToClip", inDevice);
         setSamplers(uniforms);
         if (!setMember(drawing, member, uniforms, UNIT_TABLE, UNIT_FIRST_PAINT)) continue;
+        if (member.part->features.cutField &&
+            !applyCutField(state, member.part->look->cut, UNIT_CUT))
+            continue;
         const core::View view{member.frameToEye, drawing.projection};
         BrickBatch batch = member.batch;
         batch.firstIndex = triangles.firstIndex;

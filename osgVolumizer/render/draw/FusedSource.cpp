@@ -73,8 +73,9 @@ std::string forEach(const std::string& code, const std::vector<Names>& members)
 std::string volumeSource(const ProgramFeatures& volume)
 {
     std::string code;
-    for (const char* file : {"filtering.glsl", "voxels.glsl", "transfer.glsl", "ray.glsl",
-                             "shading.glsl", "fog.glsl", "skipping.glsl", "region.glsl"})
+    for (const char* file :
+         {"filtering.glsl", "voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl", "fog.glsl",
+          "cut.glsl", "skipping.glsl", "region.glsl"})
         code += shaderSource(file);
     return volume.paintCount > 0 ? code + paintSource(volume.paintCount) : code;
 }

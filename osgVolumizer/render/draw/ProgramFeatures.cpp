@@ -39,6 +39,8 @@ constexpr Flag FLAGS[] = {
     {&ProgramFlags::coarse, "COARSE"},
     {&ProgramFlags::blendsSteps, "BLENDS_STEPS"},
     {&ProgramFlags::fog, "FOG"},
+    {&ProgramFlags::cut, "CUT"},
+    {&ProgramFlags::cutField, "CUT_FIELD"},
     {&ProgramFlags::inOrder, "IN_ORDER"},
 };
 // A flag without a row would be missing in the key, and programs would be taken for one another.

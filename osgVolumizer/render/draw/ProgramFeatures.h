@@ -34,6 +34,8 @@ struct ProgramFlags
     bool coarse = false;          ///< fewer rays than pixels: see CoarseImage
     bool blendsSteps = false;     ///< values are those between two time steps
     bool fog = false;             ///< colours fade with depth
+    bool cut = false;             ///< by a VolumeCut, more than planes can
+    bool cutField = false;        ///< whose distances are those of a grid, too
     bool inOrder = false;         ///< of several that are marched: one after another, not together
 };
 

@@ -173,6 +173,7 @@ void VolumeDrawable::drawMarched(osg::RenderInfo& renderInfo,
     setSamplers(uniforms);
     setUniforms(state, uniforms, *_part, rays, view.toEye, resources->part<AccumulationBuffers>());
     if (look.table.texture && !applyTable(state, look.table.texture.get(), UNIT_TABLE)) return;
+    if (_part->features.cutField && !applyCutField(state, look.cut, UNIT_CUT)) return;
     if (_part->paints)
         setPaints(renderInfo, resources->limits, uniforms, *_part->paints, UNIT_FIRST_PAINT);
     BatchDrawing drawing{renderInfo, resources->limits, uniforms, _part->features, view};

@@ -2,6 +2,7 @@
 
 #include "../context/LeafState.h"
 #include "../textures/TableTextures.h"
+#include "CutLook.h"
 #include "ProgramFeatures.h"
 
 #include <glm/mat3x3.hpp>
@@ -32,8 +33,10 @@ struct VolumeLook
     double voxelsPerSample = 1.0;         ///< along the view axis
     int maximumSteps = 1;
     glm::vec3 regionMin{0.0f}, regionMax{0.0f}; ///< slabs: box of the whole volume (frame)
-    /// Half-spaces (frame) that cut: clip planes, and slabs by those of the region.
+    /// Half-spaces (frame) that cut: clip planes, those of a VolumeCut, and slabs by those of the
+    /// region.
     std::vector<glm::vec4> planes;
+    CutLook cut; ///< with the feature; its number always
     /// Slabs: part of a pixel, in the frame. Faces are this much larger than what they stand for:
     /// which pixels a segment covers is for the shader to say, whose answer does not depend on how
     /// GL rounds vertices or whom it gives the pixels on an edge.

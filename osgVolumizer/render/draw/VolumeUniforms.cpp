@@ -129,7 +129,8 @@ void setSamplers(const Uniforms& uniforms)
                                                                  {"sortedFar", UNIT_SORTED_FAR},
                                                                  {"sortedNear", UNIT_SORTED_NEAR},
                                                                  {"cells", UNIT_CELLS},
-                                                                 {"nextVoxels", UNIT_NEXT_VOXELS}};
+                                                                 {"nextVoxels", UNIT_NEXT_VOXELS},
+                                                                 {"cutField", UNIT_CUT}};
     for (const auto& unit : UNITS)
         uniforms.set(unit.first, static_cast<int>(unit.second));
 }
@@ -153,6 +154,7 @@ void setUniforms(osg::State& state, const Uniforms& uniforms, const VolumePart& 
     }
     if (part.features.shading) setShading(uniforms, part, rays, frameToEye, state);
     if (part.features.fog) setFog(uniforms, look, rays);
+    if (part.features.cut) setCut(uniforms, look.cut);
     if (!part.features.slab && (part.features.shading || part.features.fog))
         uniforms.set("frameToEye", frameToEye);
     if (part.features.opaqueDepth) setDepthTextures(state, uniforms, rays, part, buffers);

@@ -41,11 +41,11 @@ std::vector<Paint> paintsOf(const VolumeInstance& volume)
     const PreparedGeometry& prepared = *volume.prepared;
     std::vector<glm::vec4> planes = planesOf(volume);
     if (!volume.look->features.voxels || !prepared.voxelFrame || !prepared.region ||
-        planes.size() > std::size_t(Paint::MAXIMUM_PLANES)) {
+        planes.size() > std::size_t(Paint::MAXIMUM_PLANES) || volume.look->features.cut) {
         refuse(volume, "painting needs voxels in a convex region of no more than " +
                            std::to_string(Paint::MAXIMUM_PLANES) +
-                           " oblique faces and clip planes, in one voxel frame; the volume is not "
-                           "shown");
+                           " oblique faces and planes that cut, in one voxel frame; the volume is "
+                           "not shown");
         return {};
     }
     planes.resize(Paint::MAXIMUM_PLANES, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));

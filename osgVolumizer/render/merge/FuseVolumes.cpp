@@ -54,7 +54,8 @@ int unitsOf(const std::vector<const VolumeInstance*>& volumes)
         tables.insert(volume->look->table.texture.get());
         const std::size_t paints = volume->paints ? 2 * volume->paints->size() : 0;
         const std::size_t steps = static_cast<std::size_t>(volume->steps.count());
-        units += volume->bricks.size() * ((volume->skipping ? 1u : 0u) + steps + paints);
+        const std::size_t cut = volume->look->features.cutField ? 1 : 0;
+        units += volume->bricks.size() * ((volume->skipping ? 1u : 0u) + steps + paints + cut);
     }
     return static_cast<int>(units + tables.size());
 }

@@ -82,6 +82,31 @@ void countCells(const core::CellGrid& grid, const std::vector<std::uint8_t>& occ
             }
 }
 
+// Takes away the cells of which a cut leaves nothing, and shrinks the box around those left.
+void cutAway(const Voxels& voxels, const core::Cut& cut, const SampleFrame& frame,
+             const core::CellGrid& grid, std::vector<std::uint8_t>& occupied, core::Box3d& box)
+{
+    core::Box3d left;
+    glm::ivec3 i;
+    for (i.z = 0; i.z < grid.count.z; ++i.z)
+        for (i.y = 0; i.y < grid.count.y; ++i.y)
+            for (i.x = 0; i.x < grid.count.x; ++i.x) {
+                std::uint8_t& cell = occupied[grid.index(i.x, i.y, i.z)];
+                if (!cell) continue;
+                const glm::dvec3 corner = grid.originVoxel + double(grid.cellSize) * glm::dvec3(i);
+                const core::Box3d part =
+                    intersection(core::Box3d{corner, corner + double(grid.cellSize)}, box);
+                if (part.empty()) continue;
+                if (cut.keepsNothingOf(boxToCut(voxels, frame.toVoxels(part)))) {
+                    cell = 0;
+                    continue;
+                }
+                left.expand(part.min);
+                left.expand(part.max);
+            }
+    box = left;
+}
+
 // Cells between the first and the last occupied one of each column: mean over the axes.
 double spannedCells(const core::CellGrid& grid, const std::vector<std::uint8_t>& occupied)
 {
@@ -171,7 +196,14 @@ OccupancyKey occupancyKey(const Voxels& voxels, const OccupancyQuery& query)
 {
     const bool byTable = voxels.getComponents() == 1 && !query.isosurface;
     return {byTable ? query.table->id : 0, query.cubic, query.isosurface,
-            query.isosurface ? query.isoFraction : 0.0};
+            query.isosurface ? query.isoFraction : 0.0, query.cut ? query.cut->id : 0};
+}
+
+core::Box3d boxToCut(const Voxels& voxels, const core::Box3d& box)
+{
+    const osg::Vec3d o = voxels.getOrigin(), s = voxels.getSpacing();
+    const glm::dvec3 origin(o.x(), o.y(), o.z()), spacing(s.x(), s.y(), s.z());
+    return {origin + spacing * box.min, origin + spacing * box.max};
 }
 
 int shownComponent(const Voxels& voxels)
@@ -179,10 +211,9 @@ int shownComponent(const Voxels& voxels)
     return voxels.getComponents() == 4 ? 3 : 0;
 }
 
-std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, const core::BrickPlace& place,
-                                               const core::CellGrid& grid,
-                                               const core::LayerRanges& layers,
-                                               const OccupancyQuery& query)
+std::shared_ptr<const BrickCells>
+findOccupied(const Voxels& voxels, const core::BrickPlace& place, const core::CellGrid& grid,
+             const core::LayerRanges& layers, const OccupancyQuery& query, const SampleFrame& frame)
 {
     auto result = std::make_shared<BrickCells>();
     const auto shows = [&](double low, double high) {
@@ -190,11 +221,15 @@ std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, const core:
     };
     result->box = shownBox(layers, place, query.cubic, shows);
     if (result->box.empty()) return result;
-    const std::vector<std::uint8_t> occupied = core::occupiedCells(grid, shows);
+    std::vector<std::uint8_t> occupied = core::occupiedCells(grid, shows);
+    if (query.cut) cutAway(voxels, *query.cut, frame, grid, occupied, result->box);
+    if (result->box.empty()) return result;
     setOccupied(grid, occupied, *result);
     const auto range = std::minmax_element(grid.low.begin(), grid.low.end());
     const float highest = *std::max_element(grid.high.begin(), grid.high.end());
-    result->homogeneous = voxels.getComponents() == 1 && *range.first == highest;
+    result->homogeneous =
+        voxels.getComponents() == 1 && *range.first == highest &&
+        (!query.cut || query.cut->keepsAllOf(boxToCut(voxels, frame.toVoxels(result->box))));
     if (result->homogeneous) result->marchedVolume = 0.0;
     return result;
 }

@@ -3,6 +3,7 @@
 #include "TableTextures.h"
 
 #include "../../Voxels.h"
+#include "../../core/cutting/Cut.h"
 #include "../../core/geometry/Box.h"
 #include "../../core/voxels/LayerRanges.h"
 #include "../../core/voxels/Occupancy.h"
@@ -43,6 +44,7 @@ struct OccupancyQuery
     bool cubic = false;      ///< values overshoot the samples'
     bool isosurface = false; ///< only this value is shown
     double isoFraction = 0.0;
+    std::shared_ptr<const core::Cut> cut; ///< what it leaves; null: all
 };
 
 /// What answers to queries depend on.
@@ -51,10 +53,11 @@ struct OccupancyKey
     unsigned tableId = 0;
     bool cubic = false, isosurface = false;
     double isoFraction = 0.0;
+    unsigned cutId = 0;
     bool operator==(const OccupancyKey& o) const
     {
         return tableId == o.tableId && cubic == o.cubic && isosurface == o.isosurface &&
-               isoFraction == o.isoFraction;
+               isoFraction == o.isoFraction && cutId == o.cutId;
     }
 };
 OccupancyKey occupancyKey(const Voxels& voxels, const OccupancyQuery& query);
@@ -68,11 +71,27 @@ osg::Texture3D* occupiedEverywhere();
 /// Whether anything is shown of data values between two, low <= high.
 bool showsValues(const Voxels& voxels, const OccupancyQuery& query, double low, double high);
 
+/// A box of the voxel frame, in the frame of cuts.
+core::Box3d boxToCut(const Voxels& voxels, const core::Box3d& box);
+
+/// A frame of samples: voxel coordinate = offset + spacing * coordinate.
+struct SampleFrame
+{
+    double spacing = 1.0, offset = 0.0; ///< the same along all axes
+
+    core::Box3d toVoxels(const core::Box3d& box) const
+    {
+        return {spacing * box.min + offset, spacing * box.max + offset};
+    }
+};
+
 /// The cells of a brick whose ranges are known. \param layers of the same samples
+/// \param frame of place and grid
 std::shared_ptr<const BrickCells> findOccupied(const Voxels& voxels, const core::BrickPlace& place,
                                                const core::CellGrid& grid,
                                                const core::LayerRanges& layers,
-                                               const OccupancyQuery& query);
+                                               const OccupancyQuery& query,
+                                               const SampleFrame& frame = {});
 /// The cells of some bricks, by number, as of one; those of all other bricks show nothing.
 std::shared_ptr<const BrickCells>
 joinCells(const Voxels& voxels,

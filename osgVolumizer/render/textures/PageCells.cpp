@@ -41,7 +41,8 @@ std::shared_ptr<const BrickCells> PageCells::get(const Voxels& voxels, const Occ
     place.samples = _brick.samples;
     place.clipBox = {(_brick.clipBox.min - _brick.offset) / _brick.spacing,
                      (_brick.clipBox.max - _brick.offset) / _brick.spacing};
-    auto cells = std::make_shared<BrickCells>(*findOccupied(voxels, place, _grid, _layers, query));
+    auto cells = std::make_shared<BrickCells>(
+        *findOccupied(voxels, place, _grid, _layers, query, {_brick.spacing, _brick.offset}));
     moveToVoxelFrame(_brick, *cells);
     return _cells.add(key, cells);
 }

@@ -27,16 +27,19 @@ public:
     };
 
     /// \param toClip where the volume is in the view \param exact a ray for each pixel
-    /// \param planes that cut the volume
+    /// \param planes that cut the volume \param cutId of its core::Cut
     VisibilityTest(unsigned frame, const osg::Matrixd& toClip, bool exact,
-                   std::vector<glm::vec4> planes)
-        : _frame(frame), _toClip(toClip), _exact(exact), _planes(std::move(planes))
+                   std::vector<glm::vec4> planes, unsigned cutId)
+        : _frame(frame), _toClip(toClip), _exact(exact), _planes(std::move(planes)), _cutId(cutId)
     {
     }
     unsigned frame() const { return _frame; }
     const osg::Matrixd& toClip() const { return _toClip; }
     bool isExact() const { return _exact; }
-    const std::vector<glm::vec4>& planes() const { return _planes; }
+    bool isCutBy(const std::vector<glm::vec4>& planes, unsigned cutId) const
+    {
+        return _planes == planes && _cutId == cutId;
+    }
 
     /// Tells that the frame had opaque geometry, before which nothing is found out.
     void setOpaque() { _opaque = true; }
@@ -65,6 +68,7 @@ private:
     const osg::Matrixd _toClip;
     const bool _exact;
     const std::vector<glm::vec4> _planes;
+    const unsigned _cutId;
     std::atomic<bool> _opaque{false}, _closed{false};
     mutable std::mutex _mutex; ///< of what follows
     std::map<std::int64_t, bool> _visible;

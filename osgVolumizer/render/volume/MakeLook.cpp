@@ -2,6 +2,7 @@
 
 #include "../context/ContextLimits.h"
 #include "../context/Matrices.h"
+#include "CutInForce.h"
 #include "PixelFootprint.h"
 #include "SettingsInForce.h"
 
@@ -146,6 +147,7 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     look->frameToUnits =
         frameToUnits(glm::dmat3(prepared.frameToObject), appearance.getEffectiveOpacityUnit());
     look->center = prepared.regionBox.center();
+    look->cut = makeCutLook(volume, look->center, features);
     const glm::dmat4 toEye = toGlm(*volume.frameToEye);
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;
     look->step = sampleDepth(toEye, prepared.regionBox, volume.sampling, visitor);

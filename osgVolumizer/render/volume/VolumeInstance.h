@@ -7,6 +7,7 @@
 
 #include "../../VolumeAppearance.h"
 #include "../../VolumeGeometry.h"
+#include "../../core/cutting/Cut.h"
 #include "../../core/ordering/DepthSchedule.h"
 #include "../../core/sampling/Polygonize.h"
 
@@ -25,7 +26,8 @@ struct VolumeInstance
     std::shared_ptr<const PreparedGeometry> prepared;
     std::shared_ptr<const VolumeLook> look;
     StateAbove above;
-    std::vector<core::Plane> clipPlanes;     ///< frame; osg::ClipPlanes of the state above
+    std::vector<core::Plane> clipPlanes;     ///< frame; osg::ClipPlanes of the state above, cut
+    std::shared_ptr<const core::Cut> cut;    ///< null for none
     bool skipping = false;                   ///< leap over cells that show nothing
     bool countSamples = false;               ///< see ViewHooks
     osg::ref_ptr<osg::RefMatrix> frameToEye; ///< model-view of the leaf

@@ -18,6 +18,8 @@ in vec3 eyePosition;
 uniform mat3 rayDirectionEye;
 #endif
 
+float kept = 1.0; // of the layer, by a cut
+
 // What the ray function makes of a layer of the volume about a place, as thick as given in t.
 // vec4 slice(vec3 place, vec3 direction, float thickness)
 #pragma ray_function
@@ -35,6 +37,14 @@ void main()
 #else
     // A ray along the planes would see an infinitely thick layer: it sees no plane either.
     float thickness = spacing / max(abs(dot(surfaceNormal, direction)), 1e-12);
+#endif
+#ifdef CUT
+#ifdef VOXEL_COORDINATES
+    kept = keptAbout(voxelCoordinate, vec3(0.0), 0.0, 0.0);
+#else
+    kept = keptAbout(voxelCoordinate, direction, 0.0, thickness);
+#endif
+    if (kept <= 0.0) discard;
 #endif
 #ifdef VOXELS
     vec3 place = placeOf(voxelCoordinate);

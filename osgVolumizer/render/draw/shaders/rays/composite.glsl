@@ -21,6 +21,7 @@ void addLight(float t, float dt, inout vec4 sum)
     knownDepth = end;
     knownEntry = entry;
     knownIntegral = integral;
+    c.a *= keptAbout(memberOrigin, memberDirection, t, dt);
     addClassified(c, place, t, sum);
 }
 float surfaceOnRay() { return 1e30; }
@@ -33,6 +34,7 @@ void addLight(float t, float dt, inout vec4 sum)
     if (t < shown.x || t >= shown.y) return;
     vec3 place = placeOrigin + t * placeRate;
     vec4 c = classify(place);
+    c.a *= keptAbout(memberOrigin, memberDirection, t, dt);
     addClassified(c, place, t, sum);
 }
 float surfaceOnRay() { return 1e30; }
@@ -48,6 +50,7 @@ void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float
     float nextEntry = tableEntryAfter(entry, place);
     vec4 nextIntegral = tableIntegral(nextEntry);
     vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
+    c.a *= keptUntil(origin + t * direction);
 #ifdef SHADING
     c = lit(c, place - 0.5 * depth * VOXEL_LENGTH * direction, t - 0.5 * depth);
 #endif
@@ -87,6 +90,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
     }
     float t = max(start, tNear + i * dt);
     vec3 place = placeOf(origin + t * direction);
+    beginCut(origin + t * direction);
     float entry = tableEntry(place);
     vec4 integral = tableIntegral(entry);
     float depth = min(stop, tNear + (i + 1.0) * dt) - t; // of the first step, which may be cut
@@ -129,8 +133,10 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     float t = tNear + (i + 0.5) * dt;
     vec3 place = placeOf(origin + t * direction);
     int steps = int(last - i);
+    beginCut(origin + (t - 0.5 * dt) * direction);
     if (steps > 0) do {
         vec4 c = classify(place);
+        c.a *= keptUntil(origin + (t + 0.5 * dt) * direction);
 #ifdef SHADING
         c = lit(c, place, t);
 #endif
@@ -178,6 +184,7 @@ vec4 slice(vec3 place, vec3 direction, float thickness)
     c.rgb = painted(c.rgb, framePosition);
 #endif
     c.rgb = fogged(c.rgb, sliceDepth());
+    c.a *= kept;
     float units = thickness * length(frameToUnits * direction);
     float depth = 0.6931471806 * c.a * units; // optical
     // 1 - exp(-depth) without cancelling the digits of thin layers.

@@ -1,4 +1,4 @@
-// The highest or lowest value, by BETTER.
+// The highest or lowest value, by BETTER; where nothing is kept it is WORST.
 
 #if defined(SLAB)
 #ifdef RGBA
@@ -10,18 +10,25 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     float count = stepsOf(tNear, tFar);
     vec3 place = placeOf(origin + direction * tNear);
     vec3 rate = VOXEL_LENGTH * direction * ((tFar - tNear) / count);
-    vec4 texel = voxelAt(place);
-    vec4 best = vec4(texel.rgb * texel.a, texel.a);
-    place += rate;
-    for (int i = int(count); i > 0; --i) {
-        texel = voxelAt(place);
-        best = BETTER(best, vec4(texel.rgb * texel.a, texel.a));
+    float dt = (tFar - tNear) / count;
+    vec4 best = vec4(WORST);
+    for (int i = 0; i <= int(count); ++i) {
+        vec4 texel = voxelAt(place);
+        if (isKept(origin + (tNear + float(i) * dt) * direction))
+            best = BETTER(best, vec4(texel.rgb * texel.a, texel.a));
         COUNT_SAMPLE
         place += rate;
     }
     return best;
 }
 #else
+#ifdef CUT
+// The value at a step of the ray, if it is kept.
+float valueAt(vec3 place, vec3 point) { return isKept(point) ? voxelAt(place) : WORST; }
+#else
+#define valueAt(place, point) voxelAt(place)
+#endif
+
 // Highest or lowest value on the brick's part of the segment, ends included. Between samples the extreme is looked
 // for about the best one, by halving: an interpolant has kinks, which would make plain sampling first order.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
@@ -32,10 +39,11 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     vec3 start = placeOf(origin + direction * tNear);
     vec3 rate = VOXEL_LENGTH * direction * ((tFar - tNear) / count);
     vec3 place = start + rate;
-    float best = voxelAt(start), at = 0.0;
+    vec3 first = origin + direction * tNear, pointRate = direction * ((tFar - tNear) / count);
+    float best = valueAt(start, first), at = 0.0;
     int steps = int(count);
     for (int i = 1; i <= steps; ++i) {
-        float value = voxelAt(place);
+        float value = valueAt(place, first + float(i) * pointRate);
         at = BETTER(value, best) != best ? float(i) : at;
         best = BETTER(value, best);
         COUNT_SAMPLE
@@ -44,7 +52,8 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     float reach = 0.5;
     for (int i = 0; i < 5; ++i) {
         float before = max(at - reach, 0.0), after = min(at + reach, count);
-        float low = voxelAt(start + before * rate), high = voxelAt(start + after * rate);
+        float low = valueAt(start + before * rate, first + before * pointRate);
+        float high = valueAt(start + after * rate, first + after * pointRate);
         float better = BETTER(low, high);
         if (BETTER(better, best) != best) at = better == low ? before : after;
         best = BETTER(better, best);
@@ -57,6 +66,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 #elif defined(SLICE)
 vec4 slice(vec3 place, vec3 direction, float thickness)
 {
+    if (kept < 0.5) discard;
 #ifdef RGBA
     vec4 texel = voxelAt(place);
     return vec4(texel.rgb * texel.a, texel.a);

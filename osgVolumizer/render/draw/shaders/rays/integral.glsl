@@ -9,20 +9,23 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     int steps = int(min(count, ceil((brick.y - tNear) / dt - 0.5)) - first);
     vec3 place = placeOf(origin + direction * (tNear + (first + 0.5) * dt));
     vec3 rate = VOXEL_LENGTH * direction * dt;
-    float sum = 0.0;
+    float sum = 0.0, keptSteps = 0.0;
+    beginCut(origin + direction * (tNear + first * dt));
     for (int i = 0; i < steps; ++i) {
-        sum += voxelAt(place);
+        float kept = keptUntil(origin + direction * (tNear + (first + float(i) + 1.0) * dt));
+        sum += kept * voxelAt(place);
+        keptSteps += kept;
         COUNT_SAMPLE
         place += rate;
     }
     float stepUnits = dt * length(frameToUnits * direction);
-    return vec4(sum * stepUnits, float(max(steps, 0)) * stepUnits, 0.0, 0.0);
+    return vec4(sum * stepUnits, keptSteps * stepUnits, 0.0, 0.0);
 }
 
 #elif defined(SLICE)
 vec4 slice(vec3 place, vec3 direction, float thickness)
 {
-    float units = thickness * length(frameToUnits * direction);
+    float units = kept * thickness * length(frameToUnits * direction);
     return vec4(voxelAt(place) * units, units, 0.0, 0.0);
 }
 #endif

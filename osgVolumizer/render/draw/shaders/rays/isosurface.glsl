@@ -39,6 +39,9 @@ float crossing(vec3 origin, vec3 direction, float tNear, float tFar, vec2 part)
     vec3 place = start + i * rate;
     float before = overIso(place), after = before;
     place += rate;
+#ifdef CUT
+    for (;;) {
+#endif
     for (; i < last && (before < 0.0) == (after < 0.0); i += 1.0) {
         before = after;
         after = overIso(place);
@@ -46,7 +49,17 @@ float crossing(vec3 origin, vec3 direction, float tNear, float tFar, vec2 part)
         place += rate;
     }
     if ((before < 0.0) == (after < 0.0)) return 1e30;
-    return tNear + rootBetween(start, rate, i - 1.0, before, i, after) * dt;
+    float t = tNear + rootBetween(start, rate, i - 1.0, before, i, after) * dt;
+#ifdef CUT
+    if (!isKept(origin + t * direction)) { // on to the next one
+        before = after;
+        continue;
+    }
+    return t;
+    }
+#else
+    return t;
+#endif
 }
 
 vec3 colorAt(vec3 origin, vec3 direction, float t)

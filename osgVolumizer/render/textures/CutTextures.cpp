@@ -1,0 +1,45 @@
+#include "CutTextures.h"
+
+#include <algorithm>
+
+namespace osgVolumizer {
+namespace render {
+
+osg::ref_ptr<osg::Texture3D>
+CutTextures::get(const std::shared_ptr<const core::DistanceField>& field)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    if (_field == field && _texture) return _texture;
+    const glm::ivec3 n = field->samples();
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(n.x, n.y, n.z, GL_RED, GL_FLOAT, 1);
+    std::copy(field->values().begin(), field->values().end(),
+              reinterpret_cast<float*>(image->data()));
+    osg::ref_ptr<osg::Texture3D> texture = new osg::Texture3D(image);
+    texture->setInternalFormat(GL_R32F);
+    texture->setResizeNonPowerOfTwoHint(false);
+    texture->setUnRefImageDataAfterApply(false);
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
+    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
+    for (auto axis : {osg::Texture::WRAP_S, osg::Texture::WRAP_T, osg::Texture::WRAP_R})
+        texture->setWrap(axis, osg::Texture::CLAMP_TO_EDGE);
+    texture->setDataVariance(osg::Object::STATIC);
+    _field = field;
+    _texture = texture;
+    return texture;
+}
+
+void CutTextures::resizeGLObjectBuffers(unsigned int maximum)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    if (_texture) _texture->resizeGLObjectBuffers(maximum);
+}
+
+void CutTextures::releaseGLObjects(osg::State* state) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    if (_texture) _texture->releaseGLObjects(state);
+}
+
+} // namespace render
+} // namespace osgVolumizer
