@@ -2,6 +2,7 @@
 
 #include <osgVolumizer/LookupTable.h>
 #include <osgVolumizer/ReadVoxels.h>
+#include <osgVolumizer/VolumeCut.h>
 
 #include <osg/MatrixTransform>
 
