@@ -38,8 +38,8 @@ private:
     {
         mutable std::mutex mutex; ///< held while the brick is read and scanned
         unsigned modifiedCount = 0, layoutCount = 0;
-        std::shared_ptr<const core::CellGrid> linear, cubic; ///< by the support of the filter
-        std::shared_ptr<const core::LayerRanges> layers;
+        std::shared_ptr<core::CellGrid> linear, cubic; ///< by the support of the filter
+        std::shared_ptr<core::LayerRanges> layers;
         core::RecencyCache<OccupancyKey, std::shared_ptr<const BrickCells>> cells{CAPACITY};
     };
     struct Joined
@@ -49,6 +49,7 @@ private:
         std::shared_ptr<const BrickCells> cells;
     };
 
+    static bool update(const Voxels& voxels, std::int64_t brick, Brick& entry);
     static bool scan(const Voxels& voxels, std::int64_t brick, bool cubic, Brick& entry);
     std::vector<std::shared_ptr<Brick>> allBricks() const;
 
