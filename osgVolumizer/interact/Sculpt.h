@@ -24,6 +24,7 @@ namespace osgVolumizer {
 /// Values count from the lower end of Voxels::getRange(), as 0, to its upper end, as 1. The range
 /// stays as it is, also where it was found in the data. Of RGBA voxels alpha is changed.
 ///
+/// One at a time sculpts the same voxels: what another does meanwhile is not in its history.
 /// To be called between frames. Of what is changed only its part of bricks is read and uploaded
 /// again; picks see it at once.
 class OSGVOLUMIZER_EXPORT Sculptor

@@ -73,19 +73,30 @@ struct Way
     int brick = BRICK;
     VoxelType type = VoxelType::FLOAT32;
     int components = 1;
+    bool full = false; ///< something shows in every brick: they are joined all the time
 };
 
 const Way WAYS[] = {
     {"joined"},
+    {"full_joined", A::SLABS, A::LINEAR, A::COMPOSITE, false, A::ON_THE_FLY, true, BRICK,
+     VoxelType::FLOAT32, 1, true},
+    {"full_cubic", A::SLABS, A::CUBIC, A::COMPOSITE, false, A::ON_THE_FLY, true, BRICK,
+     VoxelType::FLOAT32, 1, true},
+    {"full_gradients", A::SLABS, A::LINEAR, A::COMPOSITE, true, A::PRECOMPUTED, true, BRICK,
+     VoxelType::FLOAT32, 1, true},
+    {"full_gradients_of_bytes", A::SLABS, A::LINEAR, A::COMPOSITE, true, A::PRECOMPUTED, true,
+     BRICK, VoxelType::UINT8, 1, true},
+    {"full_isosurface", A::SLABS, A::LINEAR, A::ISOSURFACE, true, A::PRECOMPUTED, true, BRICK,
+     VoxelType::FLOAT32, 1, true},
     {"apart", A::SLABS, A::LINEAR, A::COMPOSITE, false, A::ON_THE_FLY, false},
     {"slices", A::SLICES},
-    {"one brick", A::SLABS, A::LINEAR, A::COMPOSITE, false, A::ON_THE_FLY, true, SIZE},
+    {"one_brick", A::SLABS, A::LINEAR, A::COMPOSITE, false, A::ON_THE_FLY, true, SIZE},
     {"cubic", A::SLABS, A::CUBIC},
     {"nearest", A::SLABS, A::NEAREST, A::COMPOSITE, false, A::ON_THE_FLY, false},
     {"shaded", A::SLABS, A::LINEAR, A::COMPOSITE, true},
-    {"gradients joined", A::SLABS, A::LINEAR, A::COMPOSITE, true, A::PRECOMPUTED},
-    {"gradients apart", A::SLABS, A::LINEAR, A::COMPOSITE, true, A::PRECOMPUTED, false},
-    {"gradients of bytes", A::SLABS, A::LINEAR, A::COMPOSITE, true, A::PRECOMPUTED, true, BRICK,
+    {"gradients_joined", A::SLABS, A::LINEAR, A::COMPOSITE, true, A::PRECOMPUTED},
+    {"gradients_apart", A::SLABS, A::LINEAR, A::COMPOSITE, true, A::PRECOMPUTED, false},
+    {"gradients_of_bytes", A::SLABS, A::LINEAR, A::COMPOSITE, true, A::PRECOMPUTED, true, BRICK,
      VoxelType::UINT8},
     {"isosurface", A::SLABS, A::LINEAR, A::ISOSURFACE, true, A::PRECOMPUTED},
     {"maximum", A::SLABS, A::LINEAR, A::MAXIMUM},
@@ -105,6 +116,8 @@ osg::ref_ptr<VolumeAppearance> makeAppearance(Voxels* voxels, const Way& way)
     volume->setTechnique(way.technique);
     volume->setLookupTable(makeTable(
         {{0.0, {0.1, 0.3, 0.9, 0.0}}, {0.3, {0.2, 0.8, 1, 0.0}}, {1.0, {1, 0.4, 0, 0.4}}}));
+    if (way.function == A::AVERAGE || way.full)
+        volume->setLookupTable(makeTable(smoothPoints(0.3)));
     volume->setInterpolation(way.interpolation);
     volume->setRayFunction(way.function);
     volume->setShading(way.shading);
@@ -131,7 +144,8 @@ osg::ref_ptr<Voxels> makeBlobOf(const Way& way)
         for (int y = 0; y < SIZE; ++y)
             for (int x = 0; x < SIZE; ++x)
                 for (int c = 0; c < d.components; ++c) {
-                    const double v = field.value(glm::dvec3(x, y, z));
+                    const glm::dvec3 p(x, y, z);
+                    const double v = way.full ? 0.1 + 0.8 * bumps(p) : field.value(p);
                     values.push_back(low +
                                      (high - low) * (c == 3 ? 0.2 * v : std::clamp(v, 0.0, 1.0)));
                 }
@@ -159,13 +173,21 @@ TEST_P(SculptingWays, PicturesAreThoseOfTheSameSamplesAnew)
     Sculptor sculptor(voxels);
     const std::string name = std::string("sculpted_") + way.name;
     FloatImage last = before;
+    int likeFrames = 0;
     const auto compareWithAnew = [&](const std::string& what) {
         const FloatImage now = renderer.render();
         const osg::ref_ptr<Voxels> fresh = anew(*voxels);
         support::SceneRenderer other(makeAppearance(fresh, way), options);
         const support::Difference d = compare(now, other.render());
-        EXPECT_LE(d.maximum, 1e-6) << what << " at " << d.worstX << " " << d.worstY;
-        EXPECT_EQ(counter(renderer, "cells occupied"), counter(other, "cells occupied")) << what;
+        // Bricks that were drawn in one texture are not taken apart as soon as others are joined.
+        const bool alike = counter(renderer, "draw calls") == counter(other, "draw calls");
+        EXPECT_TRUE(alike || way.joining) << what;
+        EXPECT_LE(d.maximum, alike ? 1e-6 : 1e-4) << what << " at " << d.worstX << " " << d.worstY;
+        if (alike) {
+            EXPECT_EQ(counter(renderer, "cells occupied"), counter(other, "cells occupied"))
+                << what;
+        }
+        likeFrames += alike;
         EXPECT_EQ(counter(renderer, "bricks drawn"), counter(other, "bricks drawn")) << what;
         EXPECT_GT(compare(now, last).maximum, 1e-3) << what;
         EXPECT_EQ(renderer.glError(), 0u);
@@ -186,17 +208,15 @@ TEST_P(SculptingWays, PicturesAreThoseOfTheSameSamplesAnew)
     EXPECT_LE(compare(last, added).maximum, 1e-6);
     ASSERT_TRUE(sculptor.undo().ok());
     compareWithAnew("all undone");
-    EXPECT_LE(compare(last, before).maximum, 1e-6);
+    EXPECT_LE(compare(last, before).maximum, way.joining ? 1e-4 : 1e-6);
     ASSERT_TRUE(sculptor.redo().ok());
     compareWithAnew("done again");
     EXPECT_LE(compare(last, added).maximum, 1e-6);
+    EXPECT_GE(likeFrames, way.joining && !way.full ? 0 : 5);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SculptingWays, ::testing::ValuesIn(WAYS), [](const auto& way) {
-    std::string name = way.param.name;
-    std::replace(name.begin(), name.end(), ' ', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(All, SculptingWays, ::testing::ValuesIn(WAYS),
+                         [](const auto& way) { return std::string(way.param.name); });
 
 using Sculpting = support::GLTest;
 
@@ -286,29 +306,30 @@ TEST_P(SculptingLarge, UploadsLittleMoreThanWhatChanged)
     Sculptor::Tool tool = makeTool(Operation::MAX_ADD, 10.0);
     ASSERT_TRUE(sculptor.setTool(tool).ok());
     source->samples = 0;
-    // 99 spacings of a quarter of the radius, through all four bricks.
-    const double length = 99 * 2.5 / std::sqrt(3.0) + 1e-9;
-    const osg::Vec3d start(200, 25, 220),
-        middle(200 + 0.5 * length, 25 + 0.5 * length, 220 + 0.5 * length);
-    const osg::Vec3d end(200 + length, 25 + length, 220 + length);
+    // 99 spacings of a quarter of the radius, through all four bricks, and within them.
+    const double side = std::sqrt(0.5 * (247.5 * 247.5 - 25.0)) + 1e-9;
+    const osg::Vec3d start(150.0, 50.0, 155.0), way(side, 5.0, side);
+    const osg::Vec3d middle = start + way * 0.5, end = start + way;
     const auto dabs = sculptor.stroke({start, middle, end});
     ASSERT_TRUE(dabs.ok());
     EXPECT_EQ(*dabs, 100);
     const std::int64_t readForIt = source->samples;
     const FloatImage after = renderer.render();
-    const core::Box3i around{{180, 5, 200}, {360, 190, 380}};
+    const std::int64_t readInAll = source->samples;
+    const core::Box3i around{{135, 30, 135}, {345, 75, 350}};
     const std::int64_t changed = changedSamples(*voxels->getSource(), around);
-    EXPECT_GT(changed, 40000);
+    EXPECT_GT(changed, 30000);
     const double uploaded = counter(renderer, "voxels uploaded");
     RecordProperty("changed", std::to_string(changed));
     RecordProperty("uploaded", std::to_string(uploaded));
-    EXPECT_GE(uploaded, 0.3 * double(changed)); // the part that is drawn
+    EXPECT_GE(uploaded, double(changed));
     EXPECT_LT(uploaded, 1.5 * double(changed));
     EXPECT_EQ(counter(renderer, "bytes uploaded"), uploaded);
     EXPECT_GT(compare(after, before).maximum, 1e-2);
     // Blocks that the tool touched, and cells that changed: a small part of what is resident.
-    EXPECT_LT(double(source->samples), 0.5 * bricks * 128 * 128 * 128);
-    EXPECT_LT(readForIt, 100 * 40 * 40 * 40);
+    EXPECT_LT(double(readForIt), 16.0 * double(changed));
+    EXPECT_LT(double(readInAll), 0.25 * bricks * 128 * 128 * 128);
+    RecordProperty("read", std::to_string(readInAll));
     renderer.render();
     EXPECT_EQ(counter(renderer, "voxels uploaded"), 0);
 
@@ -323,7 +344,7 @@ TEST_P(SculptingLarge, UploadsLittleMoreThanWhatChanged)
     std::vector<unsigned char> was, is;
     for (int i = 1; i < 12; ++i) {
         const double f = i / 99.0;
-        const core::Box3i near{{190, 12, 207}, {260, 80, 270}};
+        const core::Box3i near{{135, 35, 140}, {200, 70, 205}};
         was.resize(std::size_t(core::sampleCount(near.size())));
         is.resize(was.size());
         ASSERT_TRUE(voxels->getSource()->read(near, was.data()).ok());
@@ -338,7 +359,8 @@ TEST_P(SculptingLarge, UploadsLittleMoreThanWhatChanged)
     sculptor.endStroke();
     EXPECT_GT(changes, 1000.0);
     EXPECT_LT(sum, 1.5 * changes);
-    EXPECT_GT(sum, 0.5 * changes);
+    EXPECT_GE(sum, changes);
+    RecordProperty("dab by dab", std::to_string(sum / changes));
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, SculptingLarge, ::testing::Values(A::SLABS, A::SLICES),

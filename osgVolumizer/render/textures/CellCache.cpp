@@ -2,6 +2,8 @@
 
 #include "BrickResidency.h"
 
+#include <iterator>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -57,12 +59,18 @@ std::shared_ptr<const BrickCells> CellCache::join(const Voxels& voxels, const Oc
     std::lock_guard<std::mutex> lock(_mutex);
     _joined.removeIf([layout](const auto& entry) { return entry.value.layoutCount != layout; });
     Joined* known = _joined.find(key);
-    Joined& joined = known ? *known : _joined.add(key, {layout, {}, nullptr});
+    Joined& joined = known ? *known : _joined.add(key, {layout, {}, {}, nullptr});
     bool changed = !joined.cells;
+    for (auto part = joined.parts.begin(); part != joined.parts.end();) {
+        const bool old = joined.modifiedCounts[part->first] != voxels.getModifiedCount(part->first);
+        changed = changed || old;
+        part = old ? joined.parts.erase(part) : std::next(part);
+    }
     for (const Part& part : parts) {
         auto& cells = joined.parts[part.first];
         changed = changed || cells != part.second;
         cells = part.second;
+        joined.modifiedCounts[part.first] = voxels.getModifiedCount(part.first);
     }
     if (changed) joined.cells = joinCells(voxels, joined.parts);
     return joined.cells;

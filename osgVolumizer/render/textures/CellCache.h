@@ -23,7 +23,7 @@ public:
                                           const OccupancyQuery& query);
     using Part = std::pair<std::int64_t, std::shared_ptr<const BrickCells>>;
     /// The cells of all bricks as of one: of these, by number, as get() gave them, and of those
-    /// asked for before. Cells of other bricks show nothing.
+    /// asked for before and have not changed since. Cells of other bricks show nothing.
     std::shared_ptr<const BrickCells> join(const Voxels& voxels, const OccupancyQuery& query,
                                            const std::vector<Part>& parts);
     /// Whether a brick has been read for its cells, in the present state of its data.
@@ -46,6 +46,7 @@ private:
     {
         unsigned layoutCount = 0;
         std::map<std::int64_t, std::shared_ptr<const BrickCells>> parts;
+        std::map<std::int64_t, unsigned> modifiedCounts; ///< of the parts' data
         std::shared_ptr<const BrickCells> cells;
     };
 
