@@ -52,12 +52,16 @@ struct Point
     glm::dvec3 voxel, position;
 };
 
-void appendFace(const std::vector<Point>& points, const glm::dvec3& across,
+void appendFace(const std::vector<Point>& points, const glm::dvec3& across, const Frame& frame,
                 core::PolygonSet& polygons)
 {
-    for (const Point& p : points)
+    const glm::dvec3 normal = across * frame.spacing;
+    const double distance = glm::dot(normal, points[0].position);
+    for (const Point& p : points) {
         for (const glm::dvec3& v : {p.voxel, p.position, across})
             polygons.values.insert(polygons.values.end(), {v.x, v.y, v.z});
+        polygons.values.push_back(distance);
+    }
     polygons.faceOffsets.push_back(polygons.faceOffsets.back() +
                                    static_cast<std::uint32_t>(points.size()));
 }
@@ -96,7 +100,7 @@ Status cutRegion(const SliceShape& shape, const Frame& frame,
                               position});
         }
         appendFace(points, ownVoxels ? acrossOf(points, frame) : shape.plane.normal / frame.spacing,
-                   result.polygons);
+                   frame, result.polygons);
     }
     result.ownPlaces = ownVoxels;
     return {};
@@ -115,7 +119,7 @@ void takeTriangles(const SliceShape& shape, const Frame& frame, SliceFaces& resu
             const SliceShape::Corner& corner = shape.corners[i + k];
             points[k] = {frame.voxelOf(corner.place), corner.position - result.center};
         }
-        appendFace(points, acrossOf(points, frame), result.polygons);
+        appendFace(points, acrossOf(points, frame), frame, result.polygons);
     }
 }
 
@@ -145,7 +149,7 @@ makeSliceFaces(const SliceShape& shape, const Voxels& voxels, const core::TetraS
     using namespace SliceFacesMaking;
     const Frame frame(voxels);
     auto all = std::make_shared<SliceFaces>();
-    all->polygons.format = core::VertexFormat::user(3, 0, 3);
+    all->polygons.format = core::VertexFormat::user(3, 0, 4);
     if (shape.kind == SliceShape::TRIANGLES) {
         takeTriangles(shape, frame, *all);
     } else if (shape.kind != SliceShape::EMPTY) {

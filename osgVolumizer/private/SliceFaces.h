@@ -19,14 +19,16 @@ namespace slices {
 struct SliceFaces
 {
     glm::dvec3 center{0.0}; ///< object frame; positions are counted from here
-    /// Records: voxel coordinates, position, and as three user values how many voxels a unit of
-    /// length (object frame) along the normal is, the same for all of a face.
+    /// Records: voxel coordinates, position, and as four user values, the same for all of a face,
+    /// how many voxels a unit of length (object frame) along the normal is, and how far along the
+    /// normal the face is from where positions are counted (where it is drawn where it is in the
+    /// volume).
     core::PolygonSet polygons;
     core::BoxIndex boxes;   ///< of each polygon in the voxel frame, a little larger
     core::Box3d bounds;     ///< of the positions, object frame
     bool ownPlaces = false; ///< it is drawn elsewhere than where it is taken to be
 
-    static constexpr int ACROSS = 6; ///< offset of the user values
+    static constexpr int ACROSS = 6, DISTANCE = 9; ///< offsets of the user values
 };
 
 /// \param region tetrahedra (object frame) that planes and polygons are cut out of; null: all

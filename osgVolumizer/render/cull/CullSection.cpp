@@ -208,6 +208,7 @@ void setAbove(const osg::Matrixd& toObject, const osg::Matrixd& toEye,
 {
     const StateAbove above = stateAbove(visitor.getCurrentStateGraph());
     part.features.voxels.fog = above.fog.has_value();
+    part.toUsualClip = above.toUsualClip;
     if (above.fog) part.fog = *above.fog;
     for (const core::Plane& plane :
          clipPlanesOf(visitor.getCurrentStateGraph(), *visitor.getCurrentRenderBin()->getStage(),
@@ -264,6 +265,11 @@ void cullSection(VolumeSlice& slice, osgUtil::CullVisitor& visitor)
             toEye = new osg::RefMatrix(*visitor.getModelViewMatrix());
         else
             addMesh(slice, faces, extent, visitor, *part);
+        part->inPlace = !faces->ownPlaces;
+        const osg::Vec3d s = voxels->getSpacing(), o = voxels->getOrigin();
+        part->positionScale = 1.0 / glm::dvec3(s.x(), s.y(), s.z());
+        part->positionOffset =
+            (faces->center - glm::dvec3(o.x(), o.y(), o.z())) * part->positionScale;
         // Then one texture for all of them will do.
         if (part->mesh && part->mesh->leavesOut && !voxels->isPaged()) {
             part->bricks =

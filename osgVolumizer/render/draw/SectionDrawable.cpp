@@ -11,6 +11,7 @@
 #include "BatchDrawing.h"
 #include "BoundMesh.h"
 #include "FusedSource.h"
+#include "PixelRays.h"
 
 namespace osgVolumizer {
 namespace render {
@@ -29,6 +30,26 @@ unsigned unitCount(const SectionFeatures& features)
     return 1 + unsigned(features.brickCount) * (features.voxels.blendsSteps ? 2 : 1);
 }
 
+// Where a pixel's ray meets the plane of a face, which is more precise than what rasterisers
+// interpolate.
+void setRays(const Uniforms& uniforms, const SectionPart& part, const osg::State& state)
+{
+    GLfloat v[4];
+    glGetFloatv(GL_VIEWPORT, v); // which more than one attribute of OSG can set
+    const glm::dmat4 toEye = toGlm(state.getModelViewMatrix());
+    const Result<PixelRays> rays =
+        pixelRays(toEye, part.toUsualClip * toGlm(state.getProjectionMatrix()),
+                  {v[0], v[1], v[2], v[3]}, -toEye[3].z, glm::dvec3(0.0));
+    const bool known = part.inPlace && rays.ok();
+    uniforms.set("hasRays", known ? 1 : 0);
+    if (!known) return;
+    uniforms.set("windowCenter", glm::vec2(rays->windowCenter));
+    uniforms.set("rayOrigin", rays->origin);
+    uniforms.set("rayDirection", rays->direction);
+    uniforms.set("positionScale", glm::vec3(part.positionScale));
+    uniforms.set("positionOffset", glm::vec3(part.positionOffset - part.mesh->voxelBase));
+}
+
 void setAll(const Uniforms& uniforms, const SectionPart& part, const osg::State& state)
 {
     const glm::dmat4 toEye = toGlm(state.getModelViewMatrix());
@@ -41,6 +62,7 @@ void setAll(const Uniforms& uniforms, const SectionPart& part, const osg::State&
     uniforms.set("usesTableOpacity", part.usesTableOpacity ? 1 : 0);
     uniforms.set("thickness", part.thickness);
     uniforms.set("period", part.period);
+    setRays(uniforms, part, state);
     if (!part.planes.empty()) uniforms.set("planes", part.planes);
     if (!part.features.voxels.fog) return;
     uniforms.set("frameToEye", toEye);

@@ -22,8 +22,12 @@ struct SectionPart
     std::vector<SelectedBrick> bricks; ///< as many as the mesh's; boxes are those it was cut at
     ColorPoints colors;
     glm::vec2 texelToFraction{1.0f, 0.0f}; ///< scale, offset
-    float thickness = 0.0f;                ///< object units
-    float period = 0.5f;                   ///< voxels
+    /// From positions to voxel coordinates, where faces are drawn where they are in the volume.
+    bool inPlace = true;
+    glm::dvec3 positionScale{1.0}, positionOffset{0.0};
+    glm::dmat4 toUsualClip{1.0};
+    float thickness = 0.0f; ///< object units
+    float period = 0.5f;    ///< voxels
     float opacity = 1.0f;
     bool usesTableOpacity = false;
     std::vector<glm::vec4> planes; ///< frame of positions; clip planes

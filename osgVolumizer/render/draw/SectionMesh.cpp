@@ -148,6 +148,7 @@ std::shared_ptr<const SectionMesh> makeSectionMesh(const slices::SliceFaces& fac
     arrays.positionOffset = faces.polygons.format.positionOffset();
     arrays.colorOffset = slices::SliceFaces::ACROSS;
     arrays.colorSize = 3;
+    arrays.spacingOffset = slices::SliceFaces::DISTANCE;
     core::Box3d all;
     for (const core::Box3d& box : faces.boxes.boxes()) {
         all.expand(box.min);

@@ -19,7 +19,8 @@ struct SectionBatch
 /// The faces of a slice, cut at the boxes of bricks. Immutable once made.
 struct SectionMesh
 {
-    VolumeMesh arrays; ///< without batches; its colours are SliceFaces::ACROSS
+    VolumeMesh arrays; ///< without batches; its colours are SliceFaces::ACROSS,
+                       ///< and its spacings SliceFaces::DISTANCE
     /// Voxel coordinates are counted from here, since GL interpolates small numbers best.
     glm::dvec3 voxelBase{0.0};
     std::vector<SectionBatch> batches;

@@ -1,6 +1,13 @@
 in vec3 voxelCoordinate;
 uniform vec3 voxelBase; // that it is counted from
 flat in vec3 across;
+flat in float distanceAlong;
+uniform bool hasRays; // the pixel's ray, in the frame of positions; see setRays()
+uniform vec2 windowCenter;
+uniform mat3 rayOrigin;
+uniform mat3 rayDirection;
+uniform vec3 positionScale; // position -> voxel coordinate as it is counted here
+uniform vec3 positionOffset;
 #if PLANES > 0
 in vec3 framePosition;
 uniform vec4 planes[PLANES];
@@ -35,6 +42,18 @@ vec4 colorOf(float fraction)
     return mix(texelFetch(colorPoints, 2 * low + 1), texelFetch(colorPoints, 2 * next + 1), t);
 }
 
+// Where the pixel's ray meets the face; what was interpolated is as good to less, and tells where
+// rays along the face would be wrong.
+vec3 voxelOfPixel()
+{
+    if (!hasRays) return voxelCoordinate;
+    vec3 w = vec3(gl_FragCoord.xy - windowCenter, 1.0);
+    vec3 origin = rayOrigin * w, direction = rayDirection * w, normal = across / positionScale;
+    float t = (distanceAlong - dot(normal, origin)) / dot(normal, direction);
+    vec3 found = (origin + t * direction) * positionScale + positionOffset;
+    return all(lessThan(abs(found - voxelCoordinate), vec3(0.01))) ? found : voxelCoordinate;
+}
+
 void main()
 {
 #if PLANES > 0
@@ -49,16 +68,17 @@ void main()
     vec4 total = vec4(0.0);
 #endif
     float counted = 0.0;
+    vec3 middle = voxelOfPixel();
 #ifdef THICK
     // One loop over all bricks: several in a row take some compilers for ever.
     vec3 slab = across * thickness;
     int layers = clamp(int(ceil(length(slab) / period - 1e-4)), 1, 4096);
     for (int i = 0; i < layers; ++i) {
-        vec3 place = voxelCoordinate + slab * ((float(i) + 0.5) / float(layers) - 0.5) + voxelBase;
+        vec3 place = middle + slab * ((float(i) + 0.5) / float(layers) - 0.5) + voxelBase;
 #pragma take
     }
 #else
-    vec3 place = voxelCoordinate + voxelBase;
+    vec3 place = middle + voxelBase;
 #pragma take
 #endif
     if (counted == 0.0) discard;

@@ -2,8 +2,10 @@
 layout(location = 0) in vec3 position;
 layout(location = 2) in vec3 voxelCoordinateIn;
 layout(location = 3) in vec3 acrossIn;
+layout(location = 4) in float distanceIn;
 out vec3 voxelCoordinate;
 flat out vec3 across; // voxels per unit of length along the normal
+flat out float distanceAlong; // of the face, along the normal
 uniform mat4 frameToClip;
 #if PLANES > 0
 out vec3 framePosition;
@@ -17,6 +19,7 @@ void main()
 {
     voxelCoordinate = voxelCoordinateIn;
     across = acrossIn;
+    distanceAlong = distanceIn;
 #if PLANES > 0
     framePosition = position;
 #endif
