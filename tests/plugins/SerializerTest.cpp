@@ -109,7 +109,8 @@ private:
 
 TEST_P(SerializerTest, SlicesKeepAllThatIsSet)
 {
-    VolumeSlice slice;
+    const osg::ref_ptr<VolumeSlice> made = new VolumeSlice;
+    VolumeSlice& slice = *made;
     ASSERT_TRUE(slice.setPlane(osg::Vec4d(0.1, -2.0, 0.3, 1.0 / 3.0)));
     ASSERT_TRUE(slice.setThickness(0.1));
     ASSERT_TRUE(slice.setSamplingPeriod(1.0 / 3.0));
@@ -163,12 +164,13 @@ TEST_P(SerializerTest, SlicesKeepAllThatIsSet)
 
 TEST_P(SerializerTest, ASliceThatIsDamagedKeepsItsDefaults)
 {
-    VolumeSlice slice;
+    const osg::ref_ptr<VolumeSlice> made = new VolumeSlice;
+    VolumeSlice& slice = *made;
     ASSERT_TRUE(slice.setThickness(0.123456789));
     ASSERT_TRUE(slice.setOpacity(0.5));
     std::string content = write(slice);
     const std::size_t at = content.find("0.123456789");
-    if (at == std::string::npos) GTEST_SKIP() << "a binary file";
+    if (at == std::string::npos) return; // a binary file
     content.replace(at, 11, "-1.23456789");
     const auto read1 = read(content);
     const auto* copy = dynamic_cast<const VolumeSlice*>(read1.get());

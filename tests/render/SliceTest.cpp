@@ -259,10 +259,13 @@ TEST_F(Slice, OfAGeometryIsTheValueOnItsTriangles)
         const bool onLeft = l.x <= MIDDLE.x && isWithin(l, LOW, HIGH);
         const bool onRight = r.x >= MIDDLE.x && isWithin(r, LOW, HIGH);
         if (!onLeft && !onRight) return std::nullopt;
+        // Whose pixel one on the ridge is, rasterisers may say.
+        if (std::min(std::abs(l.x - MIDDLE.x), std::abs(r.x - MIDDLE.x)) < 0.02)
+            return std::nullopt;
         const bool leftFirst = !onRight || (onLeft && glm::dot(l - r, d) < 0.0);
         return leftFirst ? truth.color(l, left.normal) : truth.color(r, right.normal);
     };
-    expectTruth(slice, voxelsOf(7), GREY, color, view({5, -60, 45}), 1e-6, "slice_geometry");
+    expectTruth(slice, voxelsOf(7), GREY, color, view({15, -30, 75}), 1e-6, "slice_geometry");
 }
 
 TEST_F(Slice, OfASlabIsTheMeanTheLargestAndTheSmallest)
