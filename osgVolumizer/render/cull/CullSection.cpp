@@ -195,6 +195,7 @@ void setLook(const VolumeSlice& slice, const VolumeAppearance& appearance, const
     part.features.translucent = slice.isTranslucent();
     part.colors = renderData<SectionData>(slice)->colors.get(*slice.getTableInForce(appearance),
                                                              voxels.getRange());
+    part.features.ramp = part.colors.count == 2 && voxels.getComponents() == 1;
     part.texelToFraction = glm::vec2(texelToRangeFraction(voxels));
     part.thickness = static_cast<float>(slice.getThickness());
     part.period = static_cast<float>(slice.getSamplingPeriod());

@@ -56,6 +56,12 @@ void setAll(const Uniforms& uniforms, const SectionPart& part, const osg::State&
     uniforms.set("frameToClip", toGlm(state.getProjectionMatrix()) * toEye);
     uniforms.set("colorPoints", int(UNIT_TABLE));
     uniforms.set("pointCount", part.colors.count);
+    const auto* ramp = part.colors.ramp;
+    if (part.features.ramp) {
+        uniforms.set("rampEnds", glm::vec2(ramp[0].value, ramp[1].value));
+        uniforms.set("rampLow", glm::vec4(ramp[0].color));
+        uniforms.set("rampHigh", glm::vec4(ramp[1].color));
+    }
     uniforms.set("texelToFraction", part.texelToFraction);
     uniforms.set("opacity", part.opacity);
     uniforms.set("voxelBase", glm::vec3(part.mesh->voxelBase));

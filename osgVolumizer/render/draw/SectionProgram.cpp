@@ -38,7 +38,8 @@ std::string headerOf(const SectionFeatures& features)
 {
     static const char* const reductions[] = {"MEAN", "MAXIMUM", "MINIMUM"};
     return VERSION + features.voxels.defines() + "#define REDUCTION_" +
-           reductions[features.reduction] + "\n" + (features.slab ? "#define THICK\n" : "");
+           reductions[features.reduction] + "\n" + (features.slab ? "#define THICK\n" : "") +
+           (features.ramp ? "#define RAMP\n" : "");
 }
 
 osg::ref_ptr<osg::StateSet> make(const SectionFeatures& features)
@@ -70,6 +71,7 @@ osg::ref_ptr<osg::StateSet> sectionStateSet(const SectionFeatures& features)
     std::uint64_t own = std::uint64_t(features.brickCount);
     own = own << 2 | std::uint64_t(features.reduction);
     own = own << 1 | std::uint64_t(features.slab);
+    own = own << 1 | std::uint64_t(features.ramp);
     own = own << 1 | std::uint64_t(features.translucent);
     const std::vector<std::uint64_t> key{std::uint64_t(SharedState::SECTIONS),
                                          features.voxels.key(), own};

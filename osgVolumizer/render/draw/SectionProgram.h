@@ -13,6 +13,7 @@ struct SectionFeatures
 {
     ProgramFeatures voxels; ///< how values are interpolated; clip planes, fog
     bool slab = false;
+    bool ramp = false; ///< the colours have two points
     VolumeSlice::Reduction reduction = VolumeSlice::MEAN;
     int brickCount = 1; ///< that a slab is drawn from at a time
     bool translucent = false;

@@ -46,6 +46,7 @@ ColorPoints make(const core::TransferFunction& function)
     result.texture->setUnRefImageDataAfterApply(false);
     result.texture->setDataVariance(osg::Object::STATIC);
     result.count = static_cast<int>(points.size());
+    if (points.size() == 2) std::copy(points.begin(), points.end(), result.ramp);
     return result;
 }
 

@@ -17,6 +17,8 @@ struct ColorPoints
 {
     osg::ref_ptr<osg::TextureBuffer> texture;
     int count = 0;
+    /// The first two, where there are no others: what a window has.
+    core::TransferFunction::Point ramp[2];
 };
 
 /// Those of tables, by what they were made from. Thread safe.

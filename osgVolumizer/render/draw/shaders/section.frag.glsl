@@ -26,6 +26,19 @@ uniform float thickness, period; // object units; voxels, at most
 #endif
 
 // Linear between points; of two at one value the later one holds from there on.
+#ifdef RAMP
+uniform vec2 rampEnds;
+uniform vec4 rampLow;
+uniform vec4 rampHigh;
+
+vec4 colorOf(float fraction)
+{
+    float width = rampEnds.y - rampEnds.x;
+    float t = width > 0.0 ? clamp((fraction - rampEnds.x) / width, 0.0, 1.0)
+                          : float(fraction >= rampEnds.x);
+    return mix(rampLow, rampHigh, t);
+}
+#else
 vec4 colorOf(float fraction)
 {
     int low = 0, high = pointCount;
@@ -41,17 +54,22 @@ vec4 colorOf(float fraction)
     float t = to > from ? clamp((fraction - from) / (to - from), 0.0, 1.0) : 0.0;
     return mix(texelFetch(colorPoints, 2 * low + 1), texelFetch(colorPoints, 2 * next + 1), t);
 }
+#endif
 
 // Where the pixel's ray meets the face; what was interpolated is as good to less, and tells where
 // rays along the face would be wrong.
 vec3 voxelOfPixel()
 {
+#ifdef FETCH // else texture units are less precise
     if (!hasRays) return voxelCoordinate;
     vec3 w = vec3(gl_FragCoord.xy - windowCenter, 1.0);
     vec3 origin = rayOrigin * w, direction = rayDirection * w, normal = across / positionScale;
     float t = (distanceAlong - dot(normal, origin)) / dot(normal, direction);
     vec3 found = (origin + t * direction) * positionScale + positionOffset;
     return all(lessThan(abs(found - voxelCoordinate), vec3(0.01))) ? found : voxelCoordinate;
+#else
+    return voxelCoordinate;
+#endif
 }
 
 void main()
