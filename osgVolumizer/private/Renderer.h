@@ -9,6 +9,7 @@ class CullVisitor;
 namespace osgVolumizer {
 
 class VolumeGeometry;
+class VolumeSlice;
 
 /// What the nodes ask of whatever draws them, so that they need not know it. Every method may be
 /// called from several threads.
@@ -19,6 +20,8 @@ public:
 
     /// What VolumeGeometry does under a cull visitor.
     virtual void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor) = 0;
+    /// What VolumeSlice does likewise.
+    virtual void cull(VolumeSlice& slice, osgUtil::CullVisitor& visitor) = 0;
     /// As osg::Node has them, for what all volumes of a context share.
     virtual void resizeGLObjectBuffers(unsigned int maximum) = 0;
     virtual void releaseGLObjects(osg::State* state) = 0;

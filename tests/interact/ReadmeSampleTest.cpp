@@ -1,6 +1,7 @@
 // The README's sample of picking: as it stands there, and that it does what it says.
 #include "PickOracle.h"
 
+#include <osgVolumizer/VolumeSlice.h>
 #include <osgVolumizer/interact/Probe.h>
 
 #include <osgViewer/Viewer>
@@ -27,6 +28,16 @@ const auto line = osgVolumizer::probe((*seen)->nodePath, eye, eye + (point - eye
 for (const osgVolumizer::ProbedVoxel& voxel : line.value.voxels)
     std::cout << voxel.distance << ": " << voxel.raw << ", " << voxel.transmittance << std::endl;
 } // end
+
+void addSlice(osgVolumizer::VolumeAppearance* appearance, const osg::Vec3d& point, const osg::Vec3d& normal)
+{
+osg::ref_ptr<osgVolumizer::VolumeSlice> slice = new osgVolumizer::VolumeSlice;
+slice->setPlane(point, normal); // object frame, as all of these
+slice->setWindow(80.0, 160.0);  // centre and width, data values
+slice->setThickness(5.0);       // the largest value within 2.5 units on each side
+slice->setReduction(osgVolumizer::VolumeSlice::MAXIMUM);
+appearance->addChild(slice);
+} // end of slices
 // clang-format on
 
 std::string textOf(const std::string& file)
@@ -41,6 +52,23 @@ TEST(ReadmeSample, IsThisOne)
     const std::size_t begin = own.find("const auto seen"), end = own.find("} // end");
     ASSERT_LT(begin, end);
     EXPECT_NE(textOf("README.md").find(own.substr(begin, end - begin)), std::string::npos);
+}
+
+TEST(ReadmeSample, OfSlicesIsThisOne)
+{
+    const std::string own = textOf("tests/interact/ReadmeSampleTest.cpp");
+    const std::size_t begin = own.find("osg::ref_ptr<osgVolumizer::VolumeSlice> slice"),
+                      end = own.find("} // end of slices");
+    ASSERT_LT(begin, end);
+    EXPECT_NE(textOf("README.md").find(own.substr(begin, end - begin)), std::string::npos);
+    const osg::ref_ptr<osgVolumizer::VolumeAppearance> appearance =
+        makeVolume(makeBlob(glm::ivec3(8), 2.0));
+    addSlice(appearance, osg::Vec3d(3, 3, 3), osg::Vec3d(0, 0, 1));
+    ASSERT_EQ(appearance->getNumChildren(), 2u);
+    const auto* slice = dynamic_cast<const osgVolumizer::VolumeSlice*>(appearance->getChild(1));
+    ASSERT_TRUE(slice);
+    EXPECT_EQ(slice->getPlane(), osg::Vec4d(0, 0, 1, -3));
+    EXPECT_NEAR(slice->getBoundingBox().xMax(), 7.0, 1e-5);
 }
 
 TEST(ReadmeSample, ListsVoxels)

@@ -4,6 +4,7 @@
 #include <osgVolumizer/ReadVoxels.h>
 #include <osgVolumizer/VolumeCut.h>
 #include <osgVolumizer/interact/Sculpt.h>
+#include <osgVolumizer/VolumeSlice.h>
 
 #include <osg/MatrixTransform>
 
@@ -107,6 +108,79 @@ private:
 };
 
 } // namespace
+
+TEST_P(SerializerTest, SlicesKeepAllThatIsSet)
+{
+    const osg::ref_ptr<VolumeSlice> made = new VolumeSlice;
+    VolumeSlice& slice = *made;
+    ASSERT_TRUE(slice.setPlane(osg::Vec4d(0.1, -2.0, 0.3, 1.0 / 3.0)));
+    ASSERT_TRUE(slice.setThickness(0.1));
+    ASSERT_TRUE(slice.setSamplingPeriod(1.0 / 3.0));
+    ASSERT_TRUE(slice.setOpacity(0.7));
+    ASSERT_TRUE(slice.setWindow(-0.1, 1e-3));
+    slice.setReduction(VolumeSlice::MINIMUM);
+    slice.setInterpolation(VolumeAppearance::CUBIC);
+    slice.setExactFiltering(true);
+    slice.setUsesTableOpacity(true);
+    slice.setRegion(VolumeGeometry::createBox(osg::BoundingBoxd(1, 2, 3, 4, 5, 6)));
+    osg::ref_ptr<VolumeSlice> copy = roundTrip(slice);
+    ASSERT_TRUE(copy.valid()) << errors();
+    EXPECT_EQ(copy->getShape(), VolumeSlice::PLANE);
+    EXPECT_EQ(copy->getPlane(), slice.getPlane());
+    EXPECT_EQ(copy->getThickness(), 0.1);
+    EXPECT_EQ(copy->getSamplingPeriod(), 1.0 / 3.0);
+    EXPECT_EQ(copy->getOpacity(), 0.7);
+    ASSERT_TRUE(copy->getWindow());
+    EXPECT_EQ(*copy->getWindow(), osg::Vec2d(-0.1, 1e-3));
+    EXPECT_EQ(copy->getReduction(), VolumeSlice::MINIMUM);
+    EXPECT_EQ(copy->getInterpolation(), VolumeAppearance::CUBIC);
+    EXPECT_TRUE(copy->getExactFiltering() && copy->getUsesTableOpacity());
+    ASSERT_TRUE(copy->getRegion());
+    EXPECT_EQ(copy->getRegion()->getTetraSet()->tetraCount(), 5u);
+
+    const std::vector<osg::Vec3d> corners = {{0.1, 0, 3}, {5, 0, 3}, {5, 1.0 / 3.0, 3}, {2, 4, 3}};
+    ASSERT_TRUE(slice.setPolygon(corners));
+    slice.setLookupTable(new LookupTable);
+    slice.getLookupTable()->setName("own");
+    copy = roundTrip(slice);
+    ASSERT_TRUE(copy.valid() && copy->getShape() == VolumeSlice::POLYGON) << errors();
+    EXPECT_EQ(copy->getPolygon(), corners);
+    ASSERT_TRUE(copy->getLookupTable());
+    EXPECT_EQ(copy->getLookupTable()->getName(), "own");
+    EXPECT_FALSE(copy->getWindow());
+
+    osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
+    osg::ref_ptr<osg::Vec3Array> points = new osg::Vec3Array;
+    for (const osg::Vec3& p : {osg::Vec3(0, 0, 0), {3, 0, 0}, {0, 3, 1}})
+        points->push_back(p);
+    geometry->setVertexArray(points);
+    geometry->setTexCoordArray(1, new osg::Vec3Array(*points));
+    geometry->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, 3));
+    ASSERT_TRUE(slice.setGeometry(geometry, 1));
+    copy = roundTrip(slice);
+    ASSERT_TRUE(copy.valid() && copy->getGeometry()) << errors();
+    EXPECT_EQ(copy->getShape(), VolumeSlice::GEOMETRY);
+    EXPECT_EQ(copy->getPlaceUnit(), 1);
+    EXPECT_EQ(errors(), "");
+}
+
+TEST_P(SerializerTest, ASliceThatIsDamagedKeepsItsDefaults)
+{
+    const osg::ref_ptr<VolumeSlice> made = new VolumeSlice;
+    VolumeSlice& slice = *made;
+    ASSERT_TRUE(slice.setThickness(0.123456789));
+    ASSERT_TRUE(slice.setOpacity(0.5));
+    std::string content = write(slice);
+    const std::size_t at = content.find("0.123456789");
+    if (at == std::string::npos) return; // a binary file
+    content.replace(at, 11, "-1.23456789");
+    const auto read1 = read(content);
+    const auto* copy = dynamic_cast<const VolumeSlice*>(read1.get());
+    ASSERT_TRUE(copy);
+    EXPECT_EQ(copy->getThickness(), 0.0);
+    EXPECT_EQ(copy->getOpacity(), 0.5);
+    EXPECT_NE(errors().find("thickness is -1.23456789"), std::string::npos) << errors();
+}
 
 TEST_P(SerializerTest, TetraSetsKeepEveryBitInEveryLayout)
 {

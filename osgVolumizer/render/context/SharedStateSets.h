@@ -22,7 +22,8 @@ enum class SharedState : std::uint64_t
     RANKED_SURFACES = SORT + 1000, ///< these and the following
     SORT_SLOTS = SORT + 2000,
     CAPTURED_SURFACES = SORT + 3000,
-    REST_SURFACES = SORT + 4000
+    REST_SURFACES = SORT + 4000,
+    SECTIONS = SORT + 5000 ///< and more numbers
 };
 
 /// State sets that all volumes, views and contexts share, made when first asked for. Thread safe.

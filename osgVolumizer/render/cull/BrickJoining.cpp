@@ -47,7 +47,7 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, const Brick
 {
     const ProgramFeatures& features = volume.look->features;
     const core::BrickLayout& layout = voxels.getLayout();
-    if (layout.brickCount() < 2 || volume.bricks.empty() || !features.slab ||
+    if (layout.brickCount() < 2 || volume.bricks.empty() || !(features.slab || volume.section) ||
         !volume.prepared->voxelFrame ||
         volume.appearance->getCombineRule() == VolumeAppearance::PAINT)
         return false;
@@ -64,6 +64,7 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, const Brick
 // left out, joining always pays.
 bool isWorthJoining(const VolumeInstance& volume, const SelectedBrick& joined, bool isJoined)
 {
+    if (volume.section) return isJoined || volume.joinsSection;
     if (volume.bricks.size() == 1) return isJoined;
     if (!joined.cells) return true;
     const double cost = (isJoined ? RELUCTANCE : 1.0) * BRICKS_COST;

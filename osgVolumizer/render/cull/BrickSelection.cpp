@@ -136,7 +136,9 @@ void selectBricks(VolumeInstance& volume, const Voxels& voxels, const ViewHooks&
         brick.box = brick.clipBox = place.clipBox;
         brick.textureScale = 1.0f / size;
         brick.textureOffset = (0.5f - glm::vec3(place.samples.min)) / size;
-        if (prepared.voxelFrame) {
+        if (volume.section) {
+            if (!volume.section->touches(brick.box)) continue;
+        } else if (prepared.voxelFrame) {
             brick.box = intersection(brick.box, prepared.regionBox);
             if (brick.box.empty()) continue;
             if (visitor.isCulled(objectBounds(brick.box, prepared.frameToObject))) continue;

@@ -30,21 +30,6 @@ namespace {
 // tell the ends of steps apart.
 constexpr int MOST_SAMPLES = 1 << 16;
 
-// What osgUtil::CullVisitor does for every drawable before it looks at it: false if the user's
-// callback or the frustum rejects it.
-bool passesOsgCulling(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
-{
-    if (osg::Callback* callback = geometry.getCullCallback()) {
-        osg::RenderInfo& info = visitor.getRenderInfo();
-        if (osg::DrawableCullCallback* d = callback->asDrawableCullCallback()) {
-            if (d->cull(&visitor, &geometry, &info)) return false;
-        } else {
-            callback->run(&geometry, &visitor);
-        }
-    }
-    return !(geometry.isCullingActive() && visitor.isCulled(geometry.getBoundingBox()));
-}
-
 void report(const VolumeInstance& volume, const Voxels& voxels, osgUtil::CullVisitor& visitor)
 {
     const std::pair<const char*, std::int64_t> values[] = {
@@ -172,9 +157,23 @@ void drawOutlines(VolumeGeometry& geometry, const Voxels* voxels, osgUtil::CullV
 
 } // namespace
 
+bool passesOsgCulling(osg::Drawable& drawable, const osg::BoundingBox& bounds,
+                      osgUtil::CullVisitor& visitor)
+{
+    if (osg::Callback* callback = drawable.getCullCallback()) {
+        osg::RenderInfo& info = visitor.getRenderInfo();
+        if (osg::DrawableCullCallback* d = callback->asDrawableCullCallback()) {
+            if (d->cull(&visitor, &drawable, &info)) return false;
+        } else {
+            callback->run(&drawable, &visitor);
+        }
+    }
+    return !(drawable.isCullingActive() && visitor.isCulled(bounds));
+}
+
 void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
 {
-    if (!passesOsgCulling(geometry, visitor)) return;
+    if (!passesOsgCulling(geometry, geometry.getBoundingBox(), visitor)) return;
     if (visitor.clampedPixelSize(geometry.getBound()) < 1.0f) {
         count(visitor.getCurrentCamera(), visitor.getFrameStamp(), "osgVolumizer volumes too small",
               1.0);

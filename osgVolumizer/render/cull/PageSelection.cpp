@@ -160,12 +160,16 @@ std::optional<PageSelection::Node> PageSelection::make(std::int64_t index)
     node.index = index;
     node.brick = _tree.brick(index);
     node.box = node.brick.clipBox;
+    if (_volume.section && !_volume.section->touches(node.box)) return std::nullopt;
     if (_volume.prepared->voxelFrame) {
         node.box = intersection(node.box, _volume.prepared->regionBox);
         if (node.box.empty() || isOutside(node.box) || isClipped(_volume, node.box))
             return std::nullopt;
         const double w = clipW(_view.toEye, node.box, _visitor).x;
         node.error = node.brick.spacing / (_voxelsPerPixel * w);
+        if (_volume.section)
+            if (const auto pixels = _volume.section->pixelsPerVoxel(node.box))
+                node.error = node.brick.spacing * *pixels;
         if (!(node.error >= 0.0)) node.error = std::numeric_limits<double>::max();
     }
     if (_voxels.getComponents() == 1 && isEmpty(node)) node.box = {};
@@ -174,6 +178,7 @@ std::optional<PageSelection::Node> PageSelection::make(std::int64_t index)
 
 bool PageSelection::isOutside(const core::Box3d& box)
 {
+    if (_volume.section) return false; // what it does not touch is left out
     if (!_view.frustum)
         return _visitor.isCulled(objectBounds(box, _volume.prepared->frameToObject));
     return !_view.frustum->contains(objectBounds(box, glm::dmat4(1.0)));

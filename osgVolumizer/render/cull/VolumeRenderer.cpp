@@ -6,6 +6,7 @@
 #include "../volume/GeometryCache.h"
 #include "../volume/SettingsInForce.h"
 #include "Cull.h"
+#include "CullSection.h"
 #include "TableChoice.h"
 
 #include "../../VolumeGeometry.h"
@@ -21,6 +22,10 @@ public:
     void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor) override
     {
         render::cull(geometry, visitor);
+    }
+    void cull(VolumeSlice& slice, osgUtil::CullVisitor& visitor) override
+    {
+        cullSection(slice, visitor);
     }
     void resizeGLObjectBuffers(unsigned int maximum) override { resizeSharedStateSets(maximum); }
     void releaseGLObjects(osg::State* state) override { releaseContextResources(state); }

@@ -4,6 +4,7 @@
 #include "../textures/SelectedBrick.h"
 #include "../textures/TimeSteps.h"
 #include "PreparedGeometry.h"
+#include "TouchedBoxes.h"
 
 #include "../../VolumeAppearance.h"
 #include "../../VolumeGeometry.h"
@@ -26,10 +27,13 @@ struct VolumeInstance
     std::shared_ptr<const PreparedGeometry> prepared;
     std::shared_ptr<const VolumeLook> look;
     StateAbove above;
-    std::vector<core::Plane> clipPlanes;     ///< frame; osg::ClipPlanes of the state above, cut
-    std::shared_ptr<const core::Cut> cut;    ///< null for none
-    bool skipping = false;                   ///< leap over cells that show nothing
-    bool countSamples = false;               ///< see ViewHooks
+    std::vector<core::Plane> clipPlanes;  ///< frame; osg::ClipPlanes of the state above, cut
+    std::shared_ptr<const core::Cut> cut; ///< null for none
+    /// Of a VolumeSlice, which has no geometry, and of which only bricks are selected; else null.
+    const TouchedBoxes* section = nullptr;
+    bool joinsSection = false; ///< bricks are to be joined for it wherever they can be
+    bool skipping = false;     ///< leap over cells that show nothing
+    bool countSamples = false; ///< see ViewHooks
     osg::ref_ptr<osg::RefMatrix> frameToEye; ///< model-view of the leaf
     osg::ref_ptr<VolumeDrawable> drawable; ///< of the leaf that stands for the volume until sorting
     std::vector<SelectedBrick> bricks;
