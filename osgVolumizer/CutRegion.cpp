@@ -79,13 +79,16 @@ CutRegion CutRegion::surface(const core::TriangleMesh& mesh, bool floats)
     region._kind = SURFACE;
     core::TriangleMesh made = mesh;
     if (mesh.validate().ok()) {
-        // What a float may be off by, and what modellers round by.
         const core::Box3d bounds = mesh.bounds();
         const glm::dvec3 largest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
-        const double ofFloats = floats ? 2.0 * std::numeric_limits<float>::epsilon() *
-                                             std::max({largest.x, largest.y, largest.z})
-                                       : 0.0;
-        made = welded(mesh, std::max(1e-6 * glm::length(bounds.size()), ofFloats));
+        const double ofFloats =
+            std::numeric_limits<float>::epsilon() * std::max({largest.x, largest.y, largest.z});
+        // As it is; else what floats may be off by, and what modellers round by.
+        for (const double tolerance :
+             {0.0, floats ? 4.0 * ofFloats : 0.0, 1e-6 * glm::length(bounds.size())}) {
+            made = welded(mesh, tolerance);
+            if (core::checkClosed(made).ok()) break;
+        }
     }
     region._mesh = std::make_shared<core::TriangleMesh>(std::move(made));
     return region;

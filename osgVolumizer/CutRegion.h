@@ -40,8 +40,9 @@ public:
     static CutRegion halfSpace(const osg::Vec4d& plane);
     static CutRegion box(const osg::BoundingBoxd& box);
     static CutRegion sphere(const osg::Vec3d& center, double radius);
-    /// The inside of a closed surface: the triangles of a drawable, or of a mesh. Vertices nearer
-    /// to each other than 1e-6 of its size, or than floats tell apart, count as one.
+    /// The inside of a closed surface: the triangles of a drawable, or of a mesh. Where it is open
+    /// otherwise, vertices nearer to each other than floats tell apart, or than 1e-6 of its size,
+    /// count as one.
     static CutRegion surface(const osg::Drawable& triangles);
     static CutRegion surface(const core::TriangleMesh& mesh);
     /// Where another volume has values from `low` to `high`, with its own origin and spacing; none

@@ -102,7 +102,7 @@ VolumeSlice::VolumeSlice(const VolumeSlice& o, const osg::CopyOp& op)
       _region(SliceNode::copied(o._region, op)),
       _lookupTable(SliceNode::copied(o._lookupTable, op)), _window(o._window), _opacity(o._opacity),
       _usesTableOpacity(o._usesTableOpacity), _exactFiltering(o._exactFiltering),
-      _interpolation(o._interpolation), _thickness(o._thickness),
+      _followsCut(o._followsCut), _interpolation(o._interpolation), _thickness(o._thickness),
       _samplingPeriod(o._samplingPeriod), _reduction(o._reduction),
       _brickDrawCallback(o._brickDrawCallback)
 {

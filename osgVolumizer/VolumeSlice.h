@@ -133,6 +133,11 @@ public:
     ReportedStatus setSamplingPeriod(double voxels);
     double getSamplingPeriod() const { return _samplingPeriod; }
 
+    /// On: only what the appearance's cut leaves is shown (see VolumeAppearance::setCut()), its own
+    /// surfaces included: places less than half a sample outside. Off by default.
+    void setFollowsCut(bool follows) { _followsCut = follows; }
+    bool getFollowsCut() const { return _followsCut; }
+
     /// Draws in place of the slice, brick by brick, with the bricks' textures; null (default): the
     /// slice draws itself.
     void setBrickDrawCallback(BrickDrawCallback* callback) { _brickDrawCallback = callback; }
@@ -171,7 +176,7 @@ private:
     osg::ref_ptr<LookupTable> _lookupTable, _windowTable;
     std::optional<osg::Vec2d> _window;
     double _opacity = 1.0;
-    bool _usesTableOpacity = false, _exactFiltering = false;
+    bool _usesTableOpacity = false, _exactFiltering = false, _followsCut = false;
     VolumeAppearance::Interpolation _interpolation = VolumeAppearance::LINEAR;
     double _thickness = 0.0, _samplingPeriod = 0.5;
     Reduction _reduction = MEAN;

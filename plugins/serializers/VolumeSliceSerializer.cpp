@@ -55,6 +55,8 @@ Status applySlice(Record& record, const osgDB::Options*, VolumeSlice& slice)
         slice.setInterpolation(static_cast<VolumeAppearance::Interpolation>(choice));
     if (note(record.getInteger("ExactFiltering", 0, 1, choice)))
         slice.setExactFiltering(choice != 0);
+    if (record.has("FollowsCut") && note(record.getInteger("FollowsCut", 0, 1, choice)))
+        slice.setFollowsCut(choice != 0);
     if (note(record.getInteger("UsesTableOpacity", 0, 1, choice)))
         slice.setUsesTableOpacity(choice != 0);
     return first;
@@ -80,6 +82,7 @@ void fillSlice(const VolumeSlice& slice, Record& record, const osgDB::OutputStre
     record.add("Reduction", std::string(VolumeSlice::REDUCTION_NAMES[slice.getReduction()]));
     record.add("Interpolation", std::string(interpolationNames[slice.getInterpolation()]));
     record.add("ExactFiltering", Field::Integers{slice.getExactFiltering()});
+    record.add("FollowsCut", Field::Integers{slice.getFollowsCut()});
     record.add("UsesTableOpacity", Field::Integers{slice.getUsesTableOpacity()});
 }
 

@@ -3,8 +3,8 @@
 #include <osgVolumizer/LookupTable.h>
 #include <osgVolumizer/ReadVoxels.h>
 #include <osgVolumizer/VolumeCut.h>
-#include <osgVolumizer/interact/Sculpt.h>
 #include <osgVolumizer/VolumeSlice.h>
+#include <osgVolumizer/interact/Sculpt.h>
 
 #include <osg/MatrixTransform>
 

@@ -4,6 +4,8 @@
 #include "Volumes.h"
 
 #include <osgVolumizer/VolumeCut.h>
+#include <osgVolumizer/VolumeSlice.h>
+#include <osgVolumizer/interact/CutCaps.h>
 
 #include <osg/ShapeDrawable>
 
@@ -30,7 +32,7 @@ constexpr double RADIUS = 9.2;
 
 RenderOptions view(const osg::Vec3d& eye = {55, -40, 45})
 {
-    return RenderOptions().size(90, 80).perspective(35.0).lookAt(eye, {12, 12, 12}, {0, 0, 1});
+    return RenderOptions().size(63, 56).perspective(35.0).lookAt(eye, {12, 12, 12}, {0, 0, 1});
 }
 
 osg::ref_ptr<A> volumeOf(const std::vector<CutRegion>& regions, double period = 0.25,
@@ -109,7 +111,7 @@ TEST_F(Cuts, ABoxCutsAsABoxOfGeometry)
                      float(PART.yMax() - PART.yMin()), float(PART.zMax() - PART.zMin())));
     for (const osg::Vec3d& eye : {osg::Vec3d(55, -40, 45), {12, 60, 12}}) {
         const FloatImage cut = support::renderScene(volumeOf({CutRegion::box(PART)}), view(eye));
-        EXPECT_GT(support::coveredPixels(cut, 0.2f).count(), 500u);
+        EXPECT_GT(support::coveredPixels(cut, 0.2f).count(), 250u);
         EXPECT_LT(difference(cut, expected(eye)), 1e-5);
         // Floats of the mesh are as good.
         EXPECT_LT(difference(support::renderScene(volumeOf({CutRegion::surface(*mesh)}), view(eye)),
@@ -146,9 +148,11 @@ TEST_F(Cuts, AndItsComplementMakeAWhole)
                             (1.0 - inside.at(x, y)[3]) * (1.0 - outside.at(x, y)[3]);
                         worst = std::max(worst, std::abs(1.0 - whole.at(x, y)[3] - through));
                     }
-                // Half-spaces cut exactly where both are sampled apart; the others share steps.
-                EXPECT_LT(worst, 2e-3) << region.first << " " << softness << " " << technique;
-                EXPECT_GT(support::coveredPixels(inside, 0.1f).count(), 300u) << region.first;
+                // Steps are shared but at the edges of a box, whose inside is cut by planes.
+                const bool edges = std::string(region.first) == "box";
+                EXPECT_LT(worst, edges ? 2e-2 : 2e-3)
+                    << region.first << " " << softness << " " << technique;
+                EXPECT_GT(support::coveredPixels(inside, 0.1f).count(), 150u) << region.first;
                 EXPECT_GT(difference(inside, whole), 0.05) << region.first;
                 const std::string name = std::string("cut_") + region.first +
                                          (softness > 0.0 ? "_soft" : "") +
@@ -196,7 +200,7 @@ TEST_F(Cuts, ASphereIsMetToSecondOrder)
                 sum += std::pow(picture.at(x, y)[3] - expected, 2.0);
                 ++count;
             }
-        EXPECT_GT(count, 300);
+        EXPECT_GT(count, 150);
         errors.push_back(std::sqrt(sum / count));
     }
     EXPECT_GT(support::convergenceOrder(periods, errors), 1.8)
@@ -221,7 +225,7 @@ TEST_F(Cuts, SurfacesAndMasksConvergeToTheSphere)
         }
         EXPECT_GT(support::convergenceOrder(steps, errors), 1.7)
             << errors[0] << " " << errors[1] << " " << errors[2];
-        EXPECT_LT(errors.back(), 1e-3);
+        EXPECT_LT(errors.back(), 2e-3);
     }
 }
 
@@ -305,7 +309,7 @@ TEST_F(Cuts, OtherRayFunctionsAreCut)
         const FloatImage exact = render({CutRegion::sphere(MIDDLE, 8.0)});
         const FloatImage mesh = render({CutRegion::surface(*sphereOfTriangles())});
         const FloatImage whole = render({});
-        EXPECT_GT(support::coveredPixels(exact).count(), 200u);
+        EXPECT_GT(support::coveredPixels(exact).count(), 100u);
         EXPECT_GT(rmse(exact, whole), 1e-2) << function;
         EXPECT_GT(rmse(exact, mesh), 1e-3) << function; // another radius
         support::savePicture(exact, "cut_function_" + std::to_string(function));
@@ -431,6 +435,47 @@ TEST_F(Cuts, HoldsFarFromTheOrigin)
         support::renderScene(far, view().lookAt(origin + osg::Vec3d(55, -40, 45),
                                                 origin + osg::Vec3d(12, 12, 12), {0, 0, 1}));
     EXPECT_LT(rmse(there, expected), 1e-4);
+}
+
+// Slices on the surfaces of a cut, in what it leaves.
+TEST_F(Cuts, CapsShowWhatIsCut)
+{
+    const auto capped = [](const std::vector<CutRegion>& regions) {
+        const osg::ref_ptr<A> volume = volumeOf(regions);
+        volume->addChild(createCaps(*volume->getCut()));
+        return volume;
+    };
+    // Seen across a half-space's plane all is its cap.
+    const RenderOptions across = view({12, -60, 12}).lookAt({12, -60, 12}, {12, 12, 12}, {0, 0, 1});
+    const FloatImage half =
+        support::renderScene(capped({CutRegion::halfSpace({0, 1, 0, -11.7})}), across);
+    osg::ref_ptr<A> alone = volumeOf({});
+    alone->removeChildren(0, 1);
+    osg::ref_ptr<VolumeSlice> slice = new VolumeSlice;
+    ASSERT_TRUE(slice->setPlane(osg::Vec4d(0, 1, 0, -11.7)));
+    alone->addChild(slice);
+    const FloatImage plane = support::renderScene(alone, across);
+    EXPECT_GT(support::coveredPixels(plane, 0.99f).count(), 250u);
+    EXPECT_LT(
+        support::compare(half, plane, support::eroded(support::coveredPixels(plane, 0.99f), 1))
+            .maximum,
+        1e-4);
+    // Of a corner that is taken out, three faces; of a ball, its inner side; of both what is left.
+    const CutRegion corner = CutRegion::box({12, -1, 12, 25, 12, 25}).complement();
+    const CutRegion ball = CutRegion::sphere(MIDDLE, RADIUS);
+    const CutRegion mesh = CutRegion::surface(*sphereOfTriangles());
+    const std::vector<std::pair<const char*, std::vector<CutRegion>>> all = {
+        {"corner", {corner}}, {"ball", {ball}}, {"both", {corner, ball}}, {"mesh", {corner, mesh}}};
+    for (const auto& cut : all) {
+        const FloatImage picture = support::renderScene(capped(cut.second), view());
+        support::savePicture(picture, std::string("caps_") + cut.first);
+        const FloatImage open = support::renderScene(volumeOf(cut.second), view());
+        // Opaque where there is a cap, and nothing beyond what the cut leaves.
+        EXPECT_GT(support::coveredPixels(picture, 0.999f).count(), 200u) << cut.first;
+        EXPECT_LT(support::coveredPixels(picture, 0.01f).count(),
+                  support::coveredPixels(open, 0.001f).count() + 200u)
+            << cut.first;
+    }
 }
 
 TEST_F(Cuts, BadRegionsChangeNothing)

@@ -41,6 +41,7 @@ Status TriangleMesh::validate() const
 TriangleMesh welded(const TriangleMesh& mesh, double tolerance)
 {
     using Cell = std::array<double, 3>;
+    constexpr std::uint32_t NONE = EdgeMap::NONE;
     const double edge = tolerance > 0.0 ? 2.0 * tolerance : 0.0;
     const glm::dvec3 origin = mesh.bounds().min;
     // Of exact places, adding 0 makes one zero of the two that there are.
@@ -50,16 +51,23 @@ TriangleMesh welded(const TriangleMesh& mesh, double tolerance)
     TriangleMesh result;
     std::map<Cell, std::vector<std::uint32_t>> cells;
     const auto numberOf = [&](const glm::dvec3& p) {
+        std::uint32_t number = NONE;
+        double nearest = tolerance;
         const glm::dvec3 low = cellOf(p - tolerance), high = cellOf(p + tolerance);
         for (int k = 0; k < (edge > 0.0 ? 8 : 1); ++k) {
             const auto found = cells.find(
                 {k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
             if (found == cells.end()) continue;
-            for (const std::uint32_t i : found->second)
-                if (glm::length(result.vertices[i] - p) <= tolerance) return i;
+            for (const std::uint32_t i : found->second) {
+                const double distance = glm::length(result.vertices[i] - p);
+                if (distance > nearest) continue;
+                nearest = distance;
+                number = i;
+            }
         }
+        if (number != NONE) return number;
         const glm::dvec3 own = cellOf(p);
-        const auto number = static_cast<std::uint32_t>(result.vertices.size());
+        number = static_cast<std::uint32_t>(result.vertices.size());
         cells[{own.x, own.y, own.z}].push_back(number);
         result.vertices.push_back(p);
         return number;

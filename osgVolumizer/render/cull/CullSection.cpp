@@ -5,6 +5,7 @@
 #include "../context/ReportOnce.h"
 #include "../context/Statistics.h"
 #include "../draw/SectionDrawable.h"
+#include "../volume/CutInForce.h"
 #include "../volume/NearestAppearance.h"
 #include "../volume/SliceCache.h"
 #include "../volume/VolumeInstance.h"
@@ -218,6 +219,26 @@ void setAbove(const osg::Matrixd& toObject, const osg::Matrixd& toEye,
     part.features.voxels.planeCount = int(part.planes.size());
 }
 
+// What the appearance's cut leaves.
+void setCutOf(const VolumeAppearance& appearance, const Voxels& voxels, SectionPart& part)
+{
+    VolumeInstance volume;
+    volume.appearance = &appearance;
+    auto prepared = std::make_shared<PreparedGeometry>();
+    volume.prepared = prepared;
+    volume.cut = cutInForce(appearance, *prepared, false);
+    if (!volume.cut) return;
+    part.cut =
+        makeCutLook(volume, voxels.getLayout().extent().center(), part.features.voxels, true);
+    const osg::Vec3d s = voxels.getSpacing();
+    double cell = 0.0;
+    if (volume.cut->field) {
+        const glm::dvec3 cells = volume.cut->field->spacing();
+        cell = std::max({cells.x, cells.y, cells.z});
+    }
+    part.cutTolerance = static_cast<float>(0.5 * std::max(std::min({s.x(), s.y(), s.z()}), cell));
+}
+
 void addLeaf(const std::shared_ptr<SectionPart>& part, const osg::BoundingBox& bounds,
              osg::RefMatrix& toEye, osgUtil::CullVisitor& visitor)
 {
@@ -260,6 +281,7 @@ void cullSection(VolumeSlice& slice, osgUtil::CullVisitor& visitor)
     if (!part->bricks.empty()) {
         setLook(slice, *appearance, *voxels, *part);
         setAbove(toObject, *toEye, visitor, *part);
+        if (slice.getFollowsCut()) setCutOf(*appearance, *voxels, *part);
         part->callback = slice.getBrickDrawCallback();
         part->objectToVoxel = osg::Matrixd::inverse(voxelToObject(*voxels));
         if (part->callback)

@@ -25,9 +25,15 @@ unsigned unitOf(std::size_t slot, bool next, const SectionFeatures& features)
     return i == 0 ? UNIT_VOXELS : UNIT_TABLE + i;
 }
 
-unsigned unitCount(const SectionFeatures& features)
+// After those of bricks and table.
+unsigned unitOfCut(const SectionFeatures& features)
 {
     return 1 + unsigned(features.brickCount) * (features.voxels.blendsSteps ? 2 : 1);
+}
+
+unsigned unitCount(const SectionFeatures& features)
+{
+    return unitOfCut(features) + (features.voxels.cutField ? 1 : 0);
 }
 
 // Where a pixel's ray meets the plane of a face, which is more precise than what rasterisers
@@ -70,6 +76,11 @@ void setAll(const Uniforms& uniforms, const SectionPart& part, const osg::State&
     uniforms.set("period", part.period);
     setRays(uniforms, part, state);
     if (!part.planes.empty()) uniforms.set("planes", part.planes);
+    if (part.features.voxels.cut) {
+        setCut(uniforms, part.cut);
+        uniforms.set("cutField", int(unitOfCut(part.features)));
+        uniforms.set("cutTolerance", part.cutTolerance);
+    }
     if (!part.features.voxels.fog) return;
     uniforms.set("frameToEye", toEye);
     uniforms.set("fogColor", part.fog.color);
@@ -165,7 +176,9 @@ void SectionDrawable::drawFaces(osg::RenderInfo& renderInfo) const
         }
         return any;
     };
-    if (applyTable(state, _part->colors.texture.get(), UNIT_TABLE)) {
+    const bool isCut =
+        !features.voxels.cutField || applyCutField(state, _part->cut, unitOfCut(features));
+    if (isCut && applyTable(state, _part->colors.texture.get(), UNIT_TABLE)) {
         const BoundMesh bound(state, *resources, _part->mesh->arrays, 0.0f);
         for (const SectionBatch& batch : _part->mesh->batches)
             if (setBricks(batch.bricks))

@@ -3,6 +3,7 @@
 #include "../../BrickDrawCallback.h"
 #include "../context/LeafState.h"
 #include "../textures/ColorPoints.h"
+#include "CutLook.h"
 #include "SectionMesh.h"
 #include "SectionProgram.h"
 
@@ -32,6 +33,8 @@ struct SectionPart
     bool usesTableOpacity = false;
     std::vector<glm::vec4> planes; ///< frame of positions; clip planes
     FogAbove fog;                  ///< with the feature
+    CutLook cut;                   ///< with the feature
+    float cutTolerance = 0.0f;     ///< object units outside that count as inside
     /// Draws instead, in the object frame; or null.
     osg::ref_ptr<const BrickDrawCallback> callback;
     osg::ref_ptr<const Voxels> voxels;

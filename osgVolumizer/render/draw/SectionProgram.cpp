@@ -30,7 +30,7 @@ std::string fragmentSource(const SectionFeatures& features)
         code += withSuffix(brick, suffix);
         takes += "        take" + suffix + "(place, total, counted);\n";
     }
-    code += shaderSource("fog.glsl");
+    code += shaderSource("fog.glsl") + shaderSource("cut.glsl");
     return code + replaced(shaderSource("section.frag.glsl"), "#pragma take\n", takes);
 }
 

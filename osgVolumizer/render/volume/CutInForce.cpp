@@ -40,12 +40,12 @@ core::Box3d cutBox(const PreparedGeometry& prepared, const Voxels* voxels)
 }
 
 std::shared_ptr<const core::Cut> cutInForce(const VolumeAppearance& appearance,
-                                            const PreparedGeometry& prepared)
+                                            const PreparedGeometry& prepared, bool anyPlanes)
 {
     const VolumeCut* cut = appearance.getCut();
     if (!cut || cut->getNumRegions() == 0) return nullptr;
     const Voxels* voxels = appearance.getVoxels();
-    return cut->cutOf(cutBox(prepared, voxels), prepared.voxelFrame || !voxels);
+    return cut->cutOf(cutBox(prepared, voxels), anyPlanes && (prepared.voxelFrame || !voxels));
 }
 
 std::vector<core::Plane> planesOfCut(const VolumeInstance& volume)
@@ -65,7 +65,7 @@ std::vector<core::Plane> planesOfCut(const VolumeInstance& volume)
 }
 
 CutLook makeCutLook(const VolumeInstance& volume, const glm::dvec3& centerFrame,
-                    ProgramFeatures& features)
+                    ProgramFeatures& features, bool withPlanes)
 {
     CutLook look;
     if (!volume.cut) return look;
@@ -78,7 +78,7 @@ CutLook makeCutLook(const VolumeInstance& volume, const glm::dvec3& centerFrame,
     const glm::dvec3 center = deformed ? cutBox(*volume.prepared, voxels).center()
                                        : glm::dvec3(look.fromVolume * glm::dvec4(centerFrame, 1.0));
     look.fromVolume[3] -= glm::dvec4(center, 0.0);
-    if (!hasExactPlanes(*volume.prepared, cut, voxels))
+    if (withPlanes || !hasExactPlanes(*volume.prepared, cut, voxels))
         for (const core::Plane& p : cut.planes)
             look.planes.emplace_back(glm::dvec4(p.normal, p.distance(center)));
     for (const core::CutShape& shape : cut.shapes) {

@@ -15,6 +15,9 @@ uniform vec4 planes[PLANES];
 #ifdef FOG
 in float depthEye;
 #endif
+#ifdef CUT
+uniform float cutTolerance; // what lies no farther outside is shown
+#endif
 out vec4 fragColor;
 uniform samplerBuffer colorPoints; // two texels a point: fraction of the range; colour, opacity
 uniform int pointCount;
@@ -87,6 +90,9 @@ void main()
 #endif
     float counted = 0.0;
     vec3 middle = voxelOfPixel();
+#ifdef CUT
+    if (cutDistance(middle + voxelBase) < -cutTolerance) discard;
+#endif
 #ifdef THICK
     // One loop over all bricks: several in a row take some compilers for ever.
     vec3 slab = across * thickness;
