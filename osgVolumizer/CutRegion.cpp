@@ -83,9 +83,11 @@ CutRegion CutRegion::surface(const core::TriangleMesh& mesh, bool floats)
         const glm::dvec3 largest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
         const double ofFloats =
             std::numeric_limits<float>::epsilon() * std::max({largest.x, largest.y, largest.z});
-        // As it is; else what floats may be off by, and what modellers round by.
+        // As it is; else what floats may be off by, and what modellers round by: less than the
+        // grid of a cut resolves in any case.
+        const double size = glm::length(bounds.size());
         for (const double tolerance :
-             {0.0, floats ? 4.0 * ofFloats : 0.0, 1e-6 * glm::length(bounds.size())}) {
+             {0.0, floats ? 4.0 * ofFloats : 0.0, 1e-6 * size, 1e-5 * size, 1e-4 * size}) {
             made = welded(mesh, tolerance);
             if (core::checkClosed(made).ok()) break;
         }

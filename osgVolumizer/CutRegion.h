@@ -41,7 +41,7 @@ public:
     static CutRegion box(const osg::BoundingBoxd& box);
     static CutRegion sphere(const osg::Vec3d& center, double radius);
     /// The inside of a closed surface: the triangles of a drawable, or of a mesh. Where it is open
-    /// otherwise, vertices nearer to each other than floats tell apart, or than 1e-6 of its size,
+    /// otherwise, vertices nearer to each other than floats tell apart, or than 1e-4 of its size,
     /// count as one.
     static CutRegion surface(const osg::Drawable& triangles);
     static CutRegion surface(const core::TriangleMesh& mesh);

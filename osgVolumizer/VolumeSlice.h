@@ -134,7 +134,8 @@ public:
     double getSamplingPeriod() const { return _samplingPeriod; }
 
     /// On: only what the appearance's cut leaves is shown (see VolumeAppearance::setCut()), its own
-    /// surfaces included: places less than half a sample outside. Off by default.
+    /// surfaces included: places less than half a sample, or a cell of its grid, outside. Off by
+    /// default.
     void setFollowsCut(bool follows) { _followsCut = follows; }
     bool getFollowsCut() const { return _followsCut; }
 

@@ -134,6 +134,7 @@ TEST_F(Cuts, AndItsComplementMakeAWhole)
         const FloatImage whole = support::renderScene(volumeOf({}, 0.5, technique), view());
         for (const auto& region : regions) {
             for (const double softness : {0.0, 3.0}) {
+                if (technique == A::SLICES && softness > 0.0) continue;
                 const auto render = [&](const CutRegion& r) {
                     const osg::ref_ptr<A> volume = volumeOf({r}, 0.5, technique);
                     volume->getCut()->setSoftness(softness);
@@ -301,7 +302,7 @@ TEST_F(Cuts, OtherRayFunctionsAreCut)
     for (const A::RayFunction function :
          {A::MAXIMUM, A::MINIMUM, A::AVERAGE, A::SUM, A::ISOSURFACE}) {
         const auto render = [&](const std::vector<CutRegion>& regions) {
-            const osg::ref_ptr<A> volume = volumeOf(regions, 0.0625);
+            const osg::ref_ptr<A> volume = volumeOf(regions, 0.25);
             volume->setRayFunction(function);
             volume->setIsoValue(0.5);
             return support::renderScene(volume, view());
@@ -346,8 +347,7 @@ TEST_F(Cuts, WhatIsCutAwayIsNeitherReadNorDrawn)
     EXPECT_EQ(corner.second, 1u);
     // Within a brick, cells are leapt over.
     const auto samples = [](const std::vector<CutRegion>& regions) {
-        const osg::ref_ptr<Voxels> fine =
-            makeVoxels(glm::ivec3(65), [](const glm::dvec3&) { return 0.7; });
+        const osg::ref_ptr<Voxels> fine = makeVoxels(glm::ivec3(65), bumps);
         const osg::ref_ptr<A> volume = volumeOf(regions);
         volume->setVoxels(fine);
         volume->removeChildren(0, 1);

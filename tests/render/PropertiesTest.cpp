@@ -84,7 +84,7 @@ FloatImage overAnother(A& a)
     return support::renderScene(group, view());
 }
 
-// Two time steps, a second after the first frame.
+// Of several time steps.
 osg::ref_ptr<A> steppedVolume()
 {
     const osg::ref_ptr<A> volume = plainVolume(new Voxels(new paged::FormulaSource(
@@ -94,9 +94,9 @@ osg::ref_ptr<A> steppedVolume()
 
 FloatImage atTime(A& a)
 {
-    support::SceneRenderer renderer(&a, view());
-    paged::settle(renderer);
-    renderer.viewer().getFrameStamp()->setSimulationTime(1.5);
+    RenderOptions options = view();
+    options.time = 1.5;
+    support::SceneRenderer renderer(&a, options);
     return paged::settle(renderer);
 }
 
@@ -141,11 +141,12 @@ const std::map<std::string, Case>& cases()
                          },
                          lit)},
         {"Gradients", change([](A& a) { a.setGradients(A::PRECOMPUTED); }, lit)},
-        {"AccumulationBits", change([](A& a) { a.setAccumulationBits(8); })},
+        {"AccumulationBits",
+         change([](A& a) { a.setAccumulationBits(8); }, [](A& a) { a.setTechnique(A::SLICES); })},
         {"CombineRule", {[](A&) {}, [](A& a) { a.setCombineRule(A::PAINT); }, overAnother}},
         {"ErrorTolerance", change([](A& a) { a.setErrorTolerance(0.05); })},
         {"TargetFrameTime", {moving, [](A& a) { a.setTargetFrameTime(1e-9); }, inMotion}},
-        {"PickOpacity", {[](A&) {}, [](A& a) { a.setPickOpacity(0.9); }, picked}}};
+        {"PickOpacity", {[](A&) {}, [](A& a) { a.setPickOpacity(0.1); }, picked}}};
     return all;
 }
 
@@ -209,7 +210,7 @@ TEST_F(Properties, WhatIsIgnoredIsReportedOnce)
                                            a.setTechnique(A::SLABS);
                                            a.setSamplingSpace(SamplingSpace::PRIMITIVE);
                                        }},
-                                      {"ray function isosurface needs slabs",
+                                      {"ray function ISOSURFACE needs slabs",
                                        [](A& a) {
                                            a.setTechnique(A::SLICES);
                                            a.setRayFunction(A::ISOSURFACE);

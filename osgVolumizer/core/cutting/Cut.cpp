@@ -11,12 +11,31 @@
 namespace osgVolumizer {
 namespace core {
 
+namespace {
+
+// By how far a place is from the middle along each axis, with which it grows.
+double outsideBy(const CutShape& shape, const glm::dvec3& fromCenter)
+{
+    const glm::dvec3 q = fromCenter - shape.halfSize;
+    return glm::length(glm::max(q, glm::dvec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0) -
+           shape.radius;
+}
+
+} // namespace
+
 double CutShape::distance(const glm::dvec3& p) const
 {
-    const glm::dvec3 q = glm::abs(p - center) - halfSize;
-    const double outside = glm::length(glm::max(q, glm::dvec3(0.0))) +
-                           std::min(std::max({q.x, q.y, q.z}), 0.0) - radius;
+    const double outside = outsideBy(*this, glm::abs(p - center));
     return keepInside ? -outside : outside;
+}
+
+ValueRange CutShape::rangeIn(const Box3d& box) const
+{
+    const glm::dvec3 low = box.min - center, high = box.max - center;
+    const double nearest = outsideBy(*this, glm::max(glm::max(low, -high), glm::dvec3(0.0)));
+    const double farthest = outsideBy(*this, glm::max(glm::abs(low), glm::abs(high)));
+    if (keepInside) return {-farthest, -nearest};
+    return {nearest, farthest};
 }
 
 double Cut::distance(const glm::dvec3& place) const
@@ -36,19 +55,17 @@ double Cut::share(const glm::dvec3& place) const
     return d >= 0.0 ? 1.0 : 0.0;
 }
 
-// Distances change by no more than what one moves.
 ValueRange Cut::rangeIn(const Box3d& box) const
 {
     const double infinite = std::numeric_limits<double>::infinity();
     ValueRange range = field ? field->rangeIn(box) : ValueRange{infinite, infinite};
     const glm::dvec3 center = box.center();
-    const double reach = 0.5 * glm::length(box.size());
     const auto narrow = [&](double low, double high) {
         range = {std::min(range.low, low), std::min(range.high, high)};
     };
     for (const CutShape& shape : shapes) {
-        const double d = shape.distance(center);
-        narrow(d - reach, d + reach);
+        const ValueRange r = shape.rangeIn(box);
+        narrow(r.low, r.high);
     }
     for (const Plane& plane : planes) {
         const double d = plane.distance(center);

@@ -22,6 +22,8 @@ struct CutShape
 
     /// To its surface, positive in what is kept.
     double distance(const glm::dvec3& p) const;
+    /// Lowest and highest of a box's.
+    ValueRange rangeIn(const Box3d& box) const;
 };
 
 /// What is left of a volume where regions cut it: all that lies in every one of them. In the frame

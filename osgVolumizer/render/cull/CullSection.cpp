@@ -231,12 +231,12 @@ void setCutOf(const VolumeAppearance& appearance, const Voxels& voxels, SectionP
     part.cut =
         makeCutLook(volume, voxels.getLayout().extent().center(), part.features.voxels, true);
     const osg::Vec3d s = voxels.getSpacing();
-    double cell = 0.0;
-    if (volume.cut->field) {
-        const glm::dvec3 cells = volume.cut->field->spacing();
-        cell = std::max({cells.x, cells.y, cells.z});
+    double tolerance = 0.5 * std::min({s.x(), s.y(), s.z()});
+    if (volume.cut->field) { // which knows no larger distances than two cells
+        const glm::dvec3 cell = volume.cut->field->spacing();
+        tolerance = std::max({cell.x, cell.y, cell.z});
     }
-    part.cutTolerance = static_cast<float>(0.5 * std::max(std::min({s.x(), s.y(), s.z()}), cell));
+    part.cutTolerance = static_cast<float>(tolerance);
 }
 
 void addLeaf(const std::shared_ptr<SectionPart>& part, const osg::BoundingBox& bounds,
