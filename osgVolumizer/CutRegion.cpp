@@ -5,10 +5,13 @@
 #include <osg/Drawable>
 #include <osg/TriangleFunctor>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace osgVolumizer {
 
@@ -62,14 +65,29 @@ CutRegion CutRegion::surface(const osg::Drawable& triangles)
 {
     osg::TriangleFunctor<AddTriangle> functor;
     triangles.accept(functor);
-    return surface(functor.mesh);
+    return surface(functor.mesh, true);
 }
 
 CutRegion CutRegion::surface(const core::TriangleMesh& mesh)
 {
+    return surface(mesh, false);
+}
+
+CutRegion CutRegion::surface(const core::TriangleMesh& mesh, bool floats)
+{
     CutRegion region;
     region._kind = SURFACE;
-    region._mesh = std::make_shared<core::TriangleMesh>(mesh.validate().ok() ? welded(mesh) : mesh);
+    core::TriangleMesh made = mesh;
+    if (mesh.validate().ok()) {
+        // What a float may be off by, and what modellers round by.
+        const core::Box3d bounds = mesh.bounds();
+        const glm::dvec3 largest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
+        const double ofFloats = floats ? 2.0 * std::numeric_limits<float>::epsilon() *
+                                             std::max({largest.x, largest.y, largest.z})
+                                       : 0.0;
+        made = welded(mesh, std::max(1e-6 * glm::length(bounds.size()), ofFloats));
+    }
+    region._mesh = std::make_shared<core::TriangleMesh>(std::move(made));
     return region;
 }
 

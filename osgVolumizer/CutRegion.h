@@ -40,8 +40,8 @@ public:
     static CutRegion halfSpace(const osg::Vec4d& plane);
     static CutRegion box(const osg::BoundingBoxd& box);
     static CutRegion sphere(const osg::Vec3d& center, double radius);
-    /// The inside of a closed surface: the triangles of a drawable, or of a mesh. Vertices at one
-    /// place count as one.
+    /// The inside of a closed surface: the triangles of a drawable, or of a mesh. Vertices nearer
+    /// to each other than 1e-6 of its size, or than floats tell apart, count as one.
     static CutRegion surface(const osg::Drawable& triangles);
     static CutRegion surface(const core::TriangleMesh& mesh);
     /// Where another volume has values from `low` to `high`, with its own origin and spacing; none
@@ -72,6 +72,8 @@ public:
     Status validate() const;
 
 private:
+    static CutRegion surface(const core::TriangleMesh& mesh, bool floats);
+
     Kind _kind = HALF_SPACE;
     bool _complement = false;
     osg::Vec4d _plane{0.0, 0.0, 1.0, std::numeric_limits<double>::max()};

@@ -1,5 +1,6 @@
 #include "VolumeAppearance.h"
 
+#include "VolumeCut.h"
 #include "core/NumberRule.h"
 #include "core/Text.h"
 #include "private/Flattening.h"
@@ -52,6 +53,11 @@ void VolumeAppearance::accept(osg::NodeVisitor& visitor)
     visitor.pushOntoNodePath(this);
     visitor.apply(*this);
     visitor.popFromNodePath();
+}
+
+void VolumeAppearance::setCut(VolumeCut* cut)
+{
+    _cut = cut;
 }
 
 void VolumeAppearance::setVoxels(Voxels* voxels)

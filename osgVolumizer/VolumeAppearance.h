@@ -3,7 +3,6 @@
 #include "Error.h"
 #include "LookupTable.h"
 #include "RenderData.h"
-#include "VolumeCut.h"
 #include "Voxels.h"
 #include "core/sampling/Polygonize.h"
 
@@ -14,6 +13,7 @@
 
 namespace osgVolumizer {
 
+class VolumeCut;
 class VolumeGeometry;
 
 /// Fills the volume geometry below it: voxels, lookup table, sampling, shading.
@@ -21,7 +21,8 @@ class OSGVOLUMIZER_EXPORT VolumeAppearance : public osg::Group
 {
 public:
     /// Slabs: exact segments, second order. Slices: one polygon per sampling surface, first
-    /// order. AUTOMATIC takes slabs wherever the geometry is convex.
+    /// order. AUTOMATIC takes slabs wherever the geometry is convex and neither sampling mode nor
+    /// space asks for slices.
     enum Technique
     {
         AUTOMATIC,
@@ -129,7 +130,7 @@ public:
 
     /// What is left of the volume; null (default): all of it. No volume that paints others is cut
     /// by more than planes.
-    void setCut(VolumeCut* cut) { _cut = cut; }
+    void setCut(VolumeCut* cut);
     VolumeCut* getCut() const { return _cut.get(); }
 
     void setTechnique(Technique technique) { _technique = technique; }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <exception>
 #include <new>
+#include <set>
 
 #include <sys/mman.h>
 
@@ -20,7 +21,8 @@ struct Voxels::Brick
     core::ValueRange range;
     bool rangeKnown = false;
     bool failed = false;
-    unsigned modified = 0; // set before the brick is shared
+    unsigned modified = 0;           // set before the brick is shared
+    std::vector<core::Box3i> unseen; // samples that may have values beyond the range
 };
 
 namespace {
@@ -136,6 +138,24 @@ ReportedStatus Voxels::setSource(VoxelSource* source)
     }
     forgetBricks();
     if (isPaged()) getRange();
+    return {};
+}
+
+ReportedStatus Voxels::exchangeSource(VoxelSource* source)
+{
+    if (!source || !valid())
+        return reported({ErrorCode::VALUE_INVALID, "there is no voxel source to exchange"});
+    const osg::ref_ptr<VoxelSource> keep(source);
+    const VoxelSource::Description d = source->describe();
+    if (d.size != _description.size || d.type != _description.type ||
+        d.components != _description.components || source->levelCount() != _source->levelCount() ||
+        source->stepCount() != _source->stepCount() || source->pageSize() != _source->pageSize())
+        return reported(
+            {ErrorCode::SIZE_MISMATCH, "a voxel source of " + core::formatTriple(d.size) +
+                                           " voxels cannot stand for one of " +
+                                           core::formatTriple(_description.size) +
+                                           " with another type, size, levels or time steps"});
+    _source = keep;
     return {};
 }
 
@@ -372,6 +392,7 @@ void Voxels::forgetBricks()
     std::lock_guard<std::mutex> lock(_mutex);
     _bricks.clear();
     _allModified = ++_lastModified;
+    _changes.forget(_lastModified);
     _layoutCount = nextLayoutCount();
 }
 
@@ -383,14 +404,95 @@ void Voxels::dirty(std::int64_t brick)
         _cache.clear();
         _bricks.clear();
         _allModified = ++_lastModified;
+        _changes.forget(_lastModified);
     } else if (brick < _layout.brickCount()) {
         // A fresh one: threads that read the old one may finish with it.
         auto fresh = std::make_shared<Brick>();
         BrickPtr& known = _bricks[brick];
         _cache.remove({brick, known ? known->modified : _allModified});
         fresh->modified = ++_lastModified;
+        _changes.forget(_lastModified);
         known = std::move(fresh);
     }
+}
+
+void Voxels::dirtyRegions(const std::vector<core::Box3i>& samples)
+{
+    const std::vector<core::Box3i> inside =
+        core::clipped(samples, {glm::ivec3(0), _description.size});
+    if (inside.empty()) return;
+    const std::vector<std::int64_t> touched =
+        isPaged() ? std::vector<std::int64_t>() : bricksWith(inside);
+    std::lock_guard<std::mutex> lock(_mutex);
+    const unsigned modified = ++_lastModified;
+    constexpr std::size_t MANY_UNSEEN = 1 << 14; // of more, all of the brick is looked at again
+    for (const std::int64_t index : touched) {
+        auto fresh = std::make_shared<Brick>();
+        BrickPtr& known = _bricks[index];
+        _cache.remove({index, known ? known->modified : _allModified});
+        if (known) {
+            std::lock_guard<std::mutex> brickLock(known->mutex);
+            fresh->range = known->range;
+            fresh->rangeKnown = known->rangeKnown;
+            fresh->unseen = known->unseen;
+        }
+        if (fresh->rangeKnown)
+            for (const core::Box3i& part : core::clipped(inside, _layout.brick(index).samples))
+                fresh->unseen.push_back(part);
+        if (fresh->unseen.size() > MANY_UNSEEN) {
+            fresh->unseen.clear();
+            fresh->rangeKnown = false;
+        }
+        fresh->modified = modified;
+        known = std::move(fresh);
+    }
+    _changes.add(inside, modified);
+}
+
+// Bricks that have any of the samples of boxes.
+std::vector<std::int64_t> Voxels::bricksWith(const std::vector<core::Box3i>& samples) const
+{
+    std::set<std::int64_t> found;
+    const glm::ivec3 count = _layout.count();
+    for (const core::Box3i& box : samples) {
+        std::vector<int> onAxis[3];
+        for (int axis = 0; axis < 3; ++axis)
+            for (int i = 0; i < count[axis]; ++i) {
+                glm::ivec3 brick(0);
+                brick[axis] = i;
+                const core::Box3i has = _layout.brick(_layout.index(brick)).samples;
+                if (box.min[axis] < has.max[axis] && has.min[axis] < box.max[axis])
+                    onAxis[axis].push_back(i);
+            }
+        for (const int z : onAxis[2])
+            for (const int y : onAxis[1])
+                for (const int x : onAxis[0])
+                    found.insert(_layout.index({x, y, z}));
+    }
+    return {found.begin(), found.end()};
+}
+
+std::optional<std::vector<core::Box3i>> Voxels::getChanges(unsigned count,
+                                                           const core::Box3i& within) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    return _changes.since(count, within);
+}
+
+unsigned Voxels::getChangeCount() const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    return _lastModified;
+}
+
+Result<VoxelBlock> Voxels::readSamples(const core::Box3i& samples) const
+{
+    if (!valid()) return Status(ErrorCode::VALUE_INVALID, "there are no voxels to read");
+    Status status;
+    bool shared = false;
+    Block block = readBrick(0, 0, samples, shared, status);
+    if (status.ok()) return block;
+    return status;
 }
 
 unsigned Voxels::getModifiedCount(std::int64_t brick) const
@@ -485,8 +587,23 @@ std::pair<double, double> Voxels::getBrickRange(std::int64_t index) const
                 significantComponent(_description));
         }
         brick->rangeKnown = true;
+        brick->unseen.clear();
     }
+    widenRange(*brick);
     return {brick->range.low, brick->range.high};
+}
+
+// By samples that have changed since the range was found. Expects brick.mutex to be held.
+void Voxels::widenRange(Brick& brick) const
+{
+    for (const core::Box3i& samples : core::coveringBoxes(brick.unseen)) {
+        const Result<VoxelBlock> block = readSamples(samples);
+        if (!block.ok()) continue; // reported where it is drawn
+        brick.range.expand(core::scanRange(
+            {block->data, _description.type, _description.components, samples.size()},
+            significantComponent(_description)));
+    }
+    brick.unseen.clear();
 }
 
 void Voxels::resizeGLObjectBuffers(unsigned int maximum)

@@ -5,6 +5,7 @@
 #include "VoxelSource.h"
 #include "core/voxels/BrickLayout.h"
 #include "core/voxels/BrickTree.h"
+#include "core/voxels/ChangeLog.h"
 
 #include <osg/Vec2d>
 #include <osg/Vec3d>
@@ -18,6 +19,7 @@
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 namespace osgVolumizer {
 
@@ -43,6 +45,10 @@ public:
     /// Replaces the source, and takes size, type, spacing, origin and range from it.
     ReportedStatus setSource(VoxelSource* source);
     VoxelSource* getSource() const { return _source.get(); }
+    /// Another source of the very same values in place of the present one: nothing is forgotten,
+    /// neither range, spacing and origin nor what is resident. Refuses (SIZE_MISMATCH) one of
+    /// another size, type, or number of components, levels, steps, or samples of a page.
+    ReportedStatus exchangeSource(VoxelSource* source);
     /// False until a source with voxels is set: such voxels draw nothing.
     bool valid() const;
 
@@ -128,6 +134,23 @@ public:
 
     /// The data of a brick, or of all (-1), has changed: it is read and uploaded again.
     void dirty(std::int64_t brick = -1);
+    /// Samples of the volume have changed, those of a box, half-open, or of several: of the bricks
+    /// that have them only these are read and uploaded again, of paged voxels the pages. The range
+    /// of the voxels stays as it is, also one that was found in the data: a table keeps its
+    /// meaning. getBrickRange() may then be wider than the data. Parts outside the volume do not
+    /// count. To be called between frames, as dirty().
+    void dirtyRegion(const core::Box3i& samples) { dirtyRegions({samples}); }
+    void dirtyRegions(const std::vector<core::Box3i>& samples);
+    /// Boxes that cover the samples within a box that have changed since getChangeCount(), or the
+    /// getModifiedCount() of a brick, was `count`; nothing where that is too long ago, or more may
+    /// have. Thread safe.
+    std::optional<std::vector<core::Box3i>> getChanges(unsigned count,
+                                                       const core::Box3i& within) const;
+    /// Grows with every change to the data. Thread safe.
+    unsigned getChangeCount() const;
+    /// The samples of a box inside the volume, read anew, or shared with the source; of time steps
+    /// those of the first. An error is not reported. Thread safe.
+    Result<VoxelBlock> readSamples(const core::Box3i& samples) const;
     /// Grows with every change to a brick's data; compared by texture caches. Thread safe.
     unsigned getModifiedCount(std::int64_t brick) const;
     /// Changes whenever layout, type, range, spacing or origin do, to a number that no other voxels
@@ -175,6 +198,8 @@ private:
                                                         const core::Box3i& samples) const;
     core::ValueRange findStepRange(int step) const;
     void findRange() const;
+    void widenRange(Brick& brick) const;
+    std::vector<std::int64_t> bricksWith(const std::vector<core::Box3i>& samples) const;
 
     osg::ref_ptr<VoxelSource> _source;
     VoxelSource::Description _description;
@@ -195,6 +220,7 @@ private:
     mutable std::unordered_map<std::int64_t, BrickPtr> _bricks; // those asked for
     unsigned _allModified = 0; // modified count of bricks not dirtied since
     unsigned _lastModified = 0;
+    core::ChangeLog _changes;
 
     mutable BlockCache _cache{CACHE_BYTES};
     mutable RenderDataSlot _renderData; // textures per context

@@ -1,7 +1,7 @@
 // A volume and the handles that it can be changed by.
 //
 //   osgvolumizerhandles SCENE                   in a window; keys 1 to 7 choose the tool, u and r
-//                                               undo and redo, Ctrl lets the view alone
+//                                               undo and redo
 //   osgvolumizerhandles SCENE TOOL PICTURE.png  without one; the tool by its name
 //
 // The first volume of the scene is taken. Faces of boxes slide only while Ctrl is down, so that the
@@ -62,11 +62,12 @@ osg::ref_ptr<VolumeHandles> cutBy(VolumeAppearance& volume, const CutRegion& reg
         .value.get();
 }
 
-// Splits a box in two, the lower part of it below a transform of its own.
+// Splits a box in two, the far part along y below a transform of its own: of the shipped head,
+// whose second axis points down, chin and neck.
 osg::ref_ptr<VolumeHandles> splitOff(VolumeGeometry& geometry, const osg::BoundingBoxd& box)
 {
     osg::BoundingBoxd upper = box, lower = box;
-    upper.zMin() = lower.zMax() = box.zMin() + 0.4 * (box.zMax() - box.zMin());
+    upper.yMax() = lower.yMin() = box.yMin() + 0.65 * (box.yMax() - box.yMin());
     geometry.setBox(upper);
     osg::ref_ptr<osg::MatrixTransform> part = new osg::MatrixTransform;
     part->addChild(VolumeGeometry::createBox(lower));
@@ -102,7 +103,7 @@ osg::ref_ptr<VolumeHandles> makeTool(const std::string& name, VolumeGeometry& ge
                      box);
     if (name == "box") return cutBy(volume, CutRegion::box({middle - half, middle + half}), box);
     if (name == "sphere")
-        return cutBy(volume, CutRegion::sphere(middle, 0.5 * box.radius()).complement(), box);
+        return cutBy(volume, CutRegion::sphere(middle, 0.3 * box.radius()).complement(), box);
     if (name == "crop") return new CropDragger(&geometry);
     if (name == "probe") return probeAlong(geometry, volume, box);
     if (name == "part") return splitOff(geometry, box);
@@ -153,7 +154,7 @@ int drawPicture(osg::Node* scene, const char* file)
     support::RenderOptions options;
     const osg::BoundingSphere& bound = scene->getBound();
     options.size(640, 480).perspective(30.0).lookAt(
-        bound.center() + osg::Vec3d(-2.2, -3.2, 1.4) * bound.radius(), bound.center(), {0, 0, 1});
+        bound.center() + osg::Vec3d(-2.8, -4.1, 1.4) * bound.radius(), bound.center(), {0, 0, 1});
     options.background = osg::Vec4(0.10f, 0.11f, 0.13f, 1.0f);
     options.light = true;
     options.frames = 2;

@@ -1,4 +1,4 @@
-#include "Pick.h"
+#include "DrawnDepth.h"
 
 #include "../VolumeAppearance.h"
 #include "../VolumeGeometry.h"
@@ -119,8 +119,12 @@ const VolumeGeometry* geometryOf(const osg::NodePath& path)
     return path.empty() ? nullptr : dynamic_cast<const VolumeGeometry*>(path.back());
 }
 
-Result<std::optional<PixelPick>> zpick(osg::Camera& camera, double x, double y,
-                                       osg::Node::NodeMask mask)
+namespace {
+
+// Under a window position of a camera, what a visitor finds.
+Result<std::optional<PixelPick>> pickPixel(osg::Camera& camera, double x, double y,
+                                           osg::Node::NodeMask mask,
+                                           osgUtil::IntersectionVisitor& visitor)
 {
     if (!std::isfinite(x) || !std::isfinite(y))
         return Status(ErrorCode::VALUE_INVALID, "window position " + core::formatNumber(x) + "," +
@@ -133,7 +137,7 @@ Result<std::optional<PixelPick>> zpick(osg::Camera& camera, double x, double y,
     osg::ref_ptr<osgUtil::LineSegmentIntersector> intersector = new osgUtil::LineSegmentIntersector(
         osgUtil::Intersector::WINDOW, viewport->x() + x, viewport->y() + y);
     intersector->setIntersectionLimit(osgUtil::Intersector::LIMIT_NEAREST);
-    osgUtil::IntersectionVisitor visitor(intersector);
+    visitor.setIntersector(intersector);
     visitor.setTraversalMask(mask);
     camera.accept(visitor);
     if (!intersector->containsIntersections()) return std::optional<PixelPick>();
@@ -147,6 +151,44 @@ Result<std::optional<PixelPick>> zpick(osg::Camera& camera, double x, double y,
     pick.drawable = first.drawable;
     pick.isVolume = dynamic_cast<const VolumeGeometry*>(first.drawable.get()) != nullptr;
     return std::optional<PixelPick>(pick);
+}
+
+/// Finds volumes, which accept visitors themselves, and no other drawable.
+struct VolumesOnly : osgUtil::IntersectionVisitor
+{
+    void apply(osg::Drawable&) override {}
+};
+
+} // namespace
+
+Result<std::optional<PixelPick>> zpick(osg::Camera& camera, double x, double y,
+                                       osg::Node::NodeMask mask)
+{
+    osgUtil::IntersectionVisitor visitor;
+    return pickPixel(camera, x, y, mask, visitor);
+}
+
+Result<std::optional<PixelPick>> zpickDrawn(osg::Camera& camera, double x, double y,
+                                            double windowDepth, osg::Node::NodeMask mask)
+{
+    if (!(windowDepth >= 0.0 && windowDepth <= 1.0))
+        return Status(ErrorCode::VALUE_INVALID,
+                      "window depth " + core::formatNumber(windowDepth) + " is outside [0, 1]");
+    VolumesOnly visitor;
+    const auto found = pickPixel(camera, x, y, mask, visitor);
+    if (!found.ok() || windowDepth == 1.0) return found; // nothing was drawn there
+    const osg::Matrixd fromWindow =
+        osg::Matrixd::inverse(camera.getViewMatrix() * camera.getProjectionMatrix() *
+                              camera.getViewport()->computeWindowMatrix());
+    const auto at = [&](double z) {
+        const osg::Viewport& viewport = *camera.getViewport();
+        return osg::Vec3d(viewport.x() + x, viewport.y() + y, z) * fromWindow;
+    };
+    PixelPick drawn;
+    drawn.point = at(windowDepth);
+    drawn.ratio = (drawn.point - at(0.0)).length() / (at(1.0) - at(0.0)).length();
+    if (found.value && found.value->ratio <= drawn.ratio) return found;
+    return std::optional<PixelPick>(drawn);
 }
 
 } // namespace osgVolumizer

@@ -2,6 +2,7 @@
 #include "RecordProperty.h"
 
 #include <osgVolumizer/AppearanceProperties.h>
+#include <osgVolumizer/VolumeCut.h>
 #include <osgVolumizer/core/Text.h>
 
 namespace osgVolumizer {
@@ -134,8 +135,8 @@ bool writeCut(osgDB::OutputStream& os, const VolumeAppearance& appearance)
 class SinceVersion : public osgDB::UserSerializer<VolumeAppearance>
 {
 public:
-    SinceVersion(int version, const char* name, Checker check, Reader read, Writer write)
-        : UserSerializer(name, check, read, write), _version(version)
+    SinceVersion(int version, const char* name, Checker checker, Reader reader, Writer writer)
+        : UserSerializer(name, checker, reader, writer), _version(version)
     {
     }
     bool read(osgDB::InputStream& is, osg::Object& object) override

@@ -2,6 +2,7 @@
 #include "Objects.h"
 #include "RecordProperty.h"
 
+#include <osgVolumizer/EditableVoxelSource.h>
 #include <osgVolumizer/Error.h>
 #include <osgVolumizer/ReadVoxels.h>
 #include <osgVolumizer/Voxels.h>
@@ -12,12 +13,20 @@ namespace osgVolumizer {
 namespace serializers {
 namespace {
 
-// Voxels with a file name are written by that name; others, and where the scene is to hold all of
-// itself, with their source, but for what is read piece by piece since it is too large.
+// Whether the file that the voxels are from has others by now.
+bool isChanged(const Voxels& voxels)
+{
+    const auto* source = dynamic_cast<const EditableVoxelSource*>(voxels.getSource());
+    return source && source->isChanged();
+}
+
+// Voxels with a file name are written by that name; others, those that have been changed, and where
+// the scene is to hold all of itself, with their source, but for what is read piece by piece since
+// it is too large.
 bool isReferred(const Voxels& voxels, const osgDB::OutputStream& os)
 {
     const bool small = voxels.getSource() && !voxels.isPaged();
-    return !voxels.getFileName().empty() && !(isEmbedding(os) && small);
+    return !voxels.getFileName().empty() && !isChanged(voxels) && !(isEmbedding(os) && small);
 }
 
 bool readSource(osgDB::InputStream& is, Voxels& voxels)
@@ -199,7 +208,8 @@ void fillBricks(const Voxels& voxels, Record& record, const osgDB::OutputStream&
         record.add("PartialBricks", Field::Integers{static_cast<int>(voxels.getPartialBricks())});
     record.add("Spacing", Field::Doubles{spacing.x(), spacing.y(), spacing.z()});
     record.add("Origin", Field::Doubles{origin.x(), origin.y(), origin.z()});
-    if (voxels.hasExplicitRange())
+    // What was found in the data before they changed is what their table is for.
+    if (voxels.hasExplicitRange() || isChanged(voxels))
         record.add("Range", Field::Doubles{voxels.getRange().x(), voxels.getRange().y()});
     if (voxels.getTextureBudget() != 0)
         record.add("TextureBudget", Field::Integers{voxels.getTextureBudget()});

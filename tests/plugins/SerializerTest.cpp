@@ -2,6 +2,8 @@
 
 #include <osgVolumizer/LookupTable.h>
 #include <osgVolumizer/ReadVoxels.h>
+#include <osgVolumizer/VolumeCut.h>
+#include <osgVolumizer/interact/Sculpt.h>
 
 #include <osg/MatrixTransform>
 
@@ -314,6 +316,42 @@ TEST_P(SerializerTest, VoxelsOfAFileCanBeWrittenInline)
     const auto* source = dynamic_cast<const MemoryVoxelSource*>(b->getVoxels()->getSource());
     ASSERT_TRUE(source && source->sizeInBytes() == bytes.size());
     EXPECT_EQ(std::memcmp(source->data(), bytes.data(), bytes.size()), 0);
+}
+
+// The file has them as they were: they are written inline, and keep their range.
+TEST_P(SerializerTest, SculptedVoxelsAreInTheScene)
+{
+    std::vector<float> values;
+    for (int i = 0; i < 5 * 6 * 7; ++i)
+        values.push_back(0.5f + 0.01f * float(i));
+    writeFile("v.raw", std::string(reinterpret_cast<const char*>(values.data()),
+                                   values.size() * sizeof(float)));
+    const auto read = readVoxels(path("v.raw") + ".5,6,7,float32");
+    ASSERT_TRUE(read.ok()) << read.status.text;
+    osg::ref_ptr<VolumeAppearance> a = new VolumeAppearance;
+    a->setVoxels(read->get());
+    ASSERT_TRUE(makeEditable(**read).ok());
+    const auto same = roundTrip(*a);
+    ASSERT_TRUE(same && same->getVoxels()) << errors();
+    EXPECT_FALSE(same->getVoxels()->getFileName().empty()); // nothing has changed yet
+    const osg::Vec2d range = (*read)->getRange();
+    Sculptor sculptor(read->get());
+    Sculptor::Tool tool;
+    tool.operation = Sculptor::Operation::ERASE;
+    tool.erased = -3.0;
+    tool.radius = osg::Vec3d(2.0, 2.0, 2.0);
+    ASSERT_TRUE(sculptor.setTool(tool).ok());
+    ASSERT_TRUE(sculptor.stroke({{2.0, 3.0, 3.0}}).ok());
+    ASSERT_TRUE((*read)->getSource()->read({{0, 0, 0}, {5, 6, 7}}, values.data()).ok());
+    EXPECT_EQ(values[2 + 5 * (3 + 6 * 3)], -3.0f);
+    const auto b = roundTrip(*a);
+    ASSERT_TRUE(b && b->getVoxels() && b->getVoxels()->valid()) << errors();
+    EXPECT_TRUE(b->getVoxels()->getFileName().empty());
+    const auto* source = dynamic_cast<const MemoryVoxelSource*>(b->getVoxels()->getSource());
+    ASSERT_TRUE(source && source->sizeInBytes() == values.size() * sizeof(float));
+    EXPECT_EQ(std::memcmp(source->data(), values.data(), source->sizeInBytes()), 0);
+    EXPECT_EQ(b->getVoxels()->getRange(), range);
+    EXPECT_TRUE(errors().empty()) << errors();
 }
 
 // A class that no scene file knows: its voxels are written; where they cannot be read, or are too

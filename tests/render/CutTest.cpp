@@ -3,6 +3,8 @@
 #include "MixedScene.h"
 #include "Volumes.h"
 
+#include <osgVolumizer/VolumeCut.h>
+
 #include <osg/ShapeDrawable>
 
 #include <support/GLTest.h>
@@ -330,8 +332,9 @@ TEST_F(Cuts, WhatIsCutAwayIsNeitherReadNorDrawn)
     };
     const auto whole = counters({});
     const auto corner = counters({CutRegion::sphere({0, 0, 0}, 5.0)});
-    const auto mesh =
-        counters({CutRegion::surface(osg::ShapeDrawable(new osg::Sphere({2.5, 2.5, 2.5}, 2.0)))});
+    const osg::ref_ptr<osg::Drawable> ball =
+        new osg::ShapeDrawable(new osg::Sphere({2.5, 2.5, 2.5}, 2.0));
+    const auto mesh = counters({CutRegion::surface(*ball)});
     EXPECT_EQ(whole.first, 64.0);
     EXPECT_EQ(corner.first, 1.0);
     EXPECT_LE(mesh.first, 8.0); // a grid's blocks are larger than that
@@ -435,9 +438,8 @@ TEST_F(Cuts, BadRegionsChangeNothing)
     const support::Reports reports;
     const osg::ref_ptr<VolumeCut> cut = new VolumeCut;
     const double infinite = std::numeric_limits<double>::infinity();
-    osg::ref_ptr<osg::ShapeDrawable> open =
-        new osg::ShapeDrawable(new osg::Sphere(MIDDLE, RADIUS), new osg::TessellationHints);
-    core::TriangleMesh mesh = *CutRegion::surface(*open).getMesh();
+    core::TriangleMesh mesh = *CutRegion::surface(*sphereOfTriangles()).getMesh();
+    EXPECT_TRUE(core::checkClosed(mesh).ok());
     mesh.indices.resize(mesh.indices.size() - 3);
     for (const CutRegion& region :
          {CutRegion::halfSpace({0, 0, 0, 1}), CutRegion::halfSpace({NAN, 0, 1, 1}),

@@ -38,16 +38,31 @@ Status TriangleMesh::validate() const
     return {};
 }
 
-TriangleMesh welded(const TriangleMesh& mesh)
+TriangleMesh welded(const TriangleMesh& mesh, double tolerance)
 {
+    using Cell = std::array<double, 3>;
+    const double edge = tolerance > 0.0 ? 2.0 * tolerance : 0.0;
+    const glm::dvec3 origin = mesh.bounds().min;
+    // Of exact places, adding 0 makes one zero of the two that there are.
+    const auto cellOf = [&](const glm::dvec3& p) -> glm::dvec3 {
+        return edge > 0.0 ? glm::floor((p - origin) / edge) : p + 0.0;
+    };
     TriangleMesh result;
-    std::map<std::array<double, 3>, std::uint32_t> numbers;
+    std::map<Cell, std::vector<std::uint32_t>> cells;
     const auto numberOf = [&](const glm::dvec3& p) {
-        // Adding 0 makes one zero of the two that there are.
-        const auto added = numbers.insert({{p.x + 0.0, p.y + 0.0, p.z + 0.0},
-                                           static_cast<std::uint32_t>(result.vertices.size())});
-        if (added.second) result.vertices.push_back(p);
-        return added.first->second;
+        const glm::dvec3 low = cellOf(p - tolerance), high = cellOf(p + tolerance);
+        for (int k = 0; k < (edge > 0.0 ? 8 : 1); ++k) {
+            const auto found = cells.find(
+                {k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
+            if (found == cells.end()) continue;
+            for (const std::uint32_t i : found->second)
+                if (glm::length(result.vertices[i] - p) <= tolerance) return i;
+        }
+        const glm::dvec3 own = cellOf(p);
+        const auto number = static_cast<std::uint32_t>(result.vertices.size());
+        cells[{own.x, own.y, own.z}].push_back(number);
+        result.vertices.push_back(p);
+        return number;
     };
     for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
         const std::uint32_t i[3] = {numberOf(mesh.corner(t, 0)), numberOf(mesh.corner(t, 1)),

@@ -29,8 +29,9 @@ struct OSGVOLUMIZER_CORE_EXPORT TriangleMesh
     Status validate() const;
 };
 
-/// Vertices at one place become one; triangles that have a corner twice go.
-OSGVOLUMIZER_CORE_EXPORT TriangleMesh welded(const TriangleMesh& mesh);
+/// Vertices nearer than a tolerance become one; triangles that have a
+/// corner twice go. Expects a mesh that validate() accepts.
+OSGVOLUMIZER_CORE_EXPORT TriangleMesh welded(const TriangleMesh& mesh, double tolerance = 0.0);
 
 /// Whether a welded mesh has an inside: refuses (VALUE_INVALID) what validate() does, and, with the
 /// place of one, edges that an odd number of triangles share. Triangles may run either way round;

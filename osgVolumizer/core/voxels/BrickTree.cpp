@@ -194,5 +194,15 @@ std::vector<std::int64_t> BrickTree::children(std::int64_t number, const glm::dv
     return bricks;
 }
 
+Box3i samplesBelow(const BrickTree& tree, const TreeBrick& brick)
+{
+    Box3i box = brick.samples;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int* end : {&box.min[axis], &box.max[axis]})
+            *end = static_cast<int>(
+                std::min<std::int64_t>(std::int64_t(*end) << brick.level, tree.size()[axis]));
+    return box;
+}
+
 } // namespace core
 } // namespace osgVolumizer

@@ -82,5 +82,8 @@ private:
     std::vector<Level> _levels;
 };
 
+/// The samples of level 0 that those of a brick stand for.
+OSGVOLUMIZER_CORE_EXPORT Box3i samplesBelow(const BrickTree& tree, const TreeBrick& brick);
+
 } // namespace core
 } // namespace osgVolumizer

@@ -2,6 +2,7 @@
 
 #include "VoxelDispatch.h"
 
+#include <algorithm>
 #include <limits>
 #include <type_traits>
 
@@ -45,6 +46,46 @@ struct Rows
     std::vector<C> low, high;
 };
 
+// The cells that have a layer, each sample of it in one of them.
+std::vector<std::size_t> cellsOfLayer(const CellGrid& grid, int axis, int layer)
+{
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    std::vector<std::size_t> cells;
+    glm::ivec3 cell;
+    cell[axis] = std::min(layer / grid.cellSize, grid.count[axis] - 1);
+    for (cell[v] = 0; cell[v] < grid.count[v]; ++cell[v])
+        for (cell[u] = 0; cell[u] < grid.count[u]; ++cell[u])
+            cells.push_back(grid.index(cell.x, cell.y, cell.z));
+    return cells;
+}
+
+// Looks at cells in the order of how low (or high) they may reach, until none can reach further.
+ValueRange layerRange(const CellGrid& grid, const Box3i& brickSamples, int axis, int layer,
+                      const std::function<ValueRange(const Box3i&)>& rangeOf)
+{
+    std::vector<std::size_t> cells = cellsOfLayer(grid, axis, layer);
+    ValueRange range;
+    const auto look = [&](std::size_t cell) {
+        Box3i part = cellSamples(grid, cell, FilterSupport::LINEAR, brickSamples);
+        part.min[axis] = brickSamples.min[axis] + layer;
+        part.max[axis] = part.min[axis] + 1;
+        range.expand(rangeOf(part));
+    };
+    std::sort(cells.begin(), cells.end(),
+              [&grid](std::size_t a, std::size_t b) { return grid.low[a] < grid.low[b]; });
+    for (const std::size_t cell : cells) {
+        if (!(double(grid.low[cell]) < range.low)) break;
+        look(cell);
+    }
+    std::sort(cells.begin(), cells.end(),
+              [&grid](std::size_t a, std::size_t b) { return grid.high[a] > grid.high[b]; });
+    for (const std::size_t cell : cells) {
+        if (!(double(grid.high[cell]) > range.high)) break;
+        look(cell);
+    }
+    return range;
+}
+
 } // namespace
 
 LayerRanges scanLayers(const VoxelView& view, int component)
@@ -75,6 +116,22 @@ LayerRanges scanLayers(const VoxelView& view, int component)
         }
     });
     return result;
+}
+
+void rescanLayers(LayerRanges& layers, const CellGrid& grid, const Box3i& brickSamples,
+                  const std::vector<Box3i>& changed,
+                  const std::function<ValueRange(const Box3i&)>& rangeOf)
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<ValueRange>& all = layers.axis[axis];
+        std::vector<char> touched(all.size(), 0);
+        for (const Box3i& box : changed)
+            for (int i = box.min[axis]; i < box.max[axis]; ++i)
+                touched[static_cast<std::size_t>(i - brickSamples.min[axis])] = 1;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (touched[i])
+                all[i] = layerRange(grid, brickSamples, axis, static_cast<int>(i), rangeOf);
+    }
 }
 
 } // namespace core

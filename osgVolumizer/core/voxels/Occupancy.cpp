@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <type_traits>
 
 namespace osgVolumizer {
@@ -154,6 +155,54 @@ CellGrid scanCells(const VoxelView& view, int cellSize, const glm::dvec3& origin
             }
     });
     return grid;
+}
+
+std::vector<std::size_t> cellsTouching(const CellGrid& grid, FilterSupport support,
+                                       const std::vector<Box3i>& samples)
+{
+    const glm::ivec3 origin(grid.originVoxel);
+    const int reach = static_cast<int>(support);
+    std::set<std::size_t> cells;
+    for (const Box3i& box : samples) {
+        glm::ivec3 first, last;
+        for (int axis = 0; axis < 3; ++axis) {
+            // A sample between two cells belongs to both; one beyond the last to that.
+            const int low = std::max(box.min[axis] - origin[axis] - reach - 1, 0);
+            const int high = std::max(box.max[axis] - 1 - origin[axis] + reach, 0);
+            first[axis] = std::min(low / grid.cellSize, grid.count[axis] - 1);
+            last[axis] = std::min(high / grid.cellSize, grid.count[axis] - 1);
+        }
+        for (int z = first.z; z <= last.z; ++z)
+            for (int y = first.y; y <= last.y; ++y)
+                for (int x = first.x; x <= last.x; ++x)
+                    cells.insert(grid.index(x, y, z));
+    }
+    return {cells.begin(), cells.end()};
+}
+
+Box3i cellSamples(const CellGrid& grid, std::size_t cell, FilterSupport support,
+                  const Box3i& brickSamples)
+{
+    const auto columns = static_cast<std::size_t>(grid.count.x);
+    const auto rows = static_cast<std::size_t>(grid.count.y);
+    const glm::ivec3 place(static_cast<int>(cell % columns),
+                           static_cast<int>(cell / columns % rows),
+                           static_cast<int>(cell / columns / rows));
+    const glm::ivec3 origin(grid.originVoxel);
+    Box3i box;
+    for (int axis = 0; axis < 3; ++axis) {
+        const SampleSpan span = samplesOfCell(place[axis], grid.cellSize, brickSamples.size()[axis],
+                                              static_cast<int>(support));
+        box.min[axis] = origin[axis] + span.first;
+        box.max[axis] = origin[axis] + span.end;
+    }
+    return box;
+}
+
+void setCellRange(CellGrid& grid, std::size_t cell, const ValueRange& range)
+{
+    grid.low[cell] = range.empty() ? INFINITY : roundedDown(range.low);
+    grid.high[cell] = range.empty() ? -INFINITY : roundedUp(range.high);
 }
 
 std::vector<std::uint8_t>

@@ -48,6 +48,16 @@ OSGVOLUMIZER_CORE_EXPORT CellGrid scanCells(const VoxelView& view, int cellSize,
                                             FilterSupport support = FilterSupport::LINEAR,
                                             int component = 0);
 
+/// Cells whose filters touch any sample of some boxes, voxel frame: indices, each once.
+OSGVOLUMIZER_CORE_EXPORT std::vector<std::size_t>
+cellsTouching(const CellGrid& grid, FilterSupport support, const std::vector<Box3i>& samples);
+/// The samples that filters in a cell touch, within a brick's; voxel frame.
+OSGVOLUMIZER_CORE_EXPORT Box3i cellSamples(const CellGrid& grid, std::size_t cell,
+                                           FilterSupport support, const Box3i& brickSamples);
+/// Sets the range of a cell, rounded outwards.
+OSGVOLUMIZER_CORE_EXPORT void setCellRange(CellGrid& grid, std::size_t cell,
+                                           const ValueRange& range);
+
 /// 255 for each cell where maximumOpacity(low, high), data values, exceeds `threshold`; else 0.
 OSGVOLUMIZER_CORE_EXPORT std::vector<std::uint8_t>
 occupiedCells(const CellGrid& grid,

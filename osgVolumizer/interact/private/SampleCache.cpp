@@ -18,7 +18,7 @@ bool sharesMemory(const Voxels& voxels, const core::Box3i& samples, const VoxelB
     }
 }
 
-ChunkPtr readChunk(const Voxels& voxels, std::int64_t index, int step)
+std::shared_ptr<SampleChunk> readChunk(const Voxels& voxels, std::int64_t index, int step)
 {
     const bool paged = voxels.isPaged();
     const core::Box3i samples =
@@ -36,20 +36,47 @@ ChunkPtr readChunk(const Voxels& voxels, std::int64_t index, int step)
 ChunkPtr SampleCache::get(const Voxels& voxels, std::int64_t index, int step)
 {
     const Key key{index, step};
-    const unsigned layout = voxels.getLayoutCount(), modified = voxels.getModifiedCount(index);
+    const unsigned layout = voxels.getLayoutCount();
+    const unsigned modified =
+        voxels.isPaged() ? voxels.getChangeCount() : voxels.getModifiedCount(index);
     {
         std::lock_guard<std::mutex> lock(_mutex);
         const auto found = _entries.find(key);
         if (found != _entries.end() && found->second.layoutCount == layout &&
-            found->second.modifiedCount == modified) {
+            (found->second.modifiedCount == modified ||
+             update(voxels, index, modified, found->second))) {
             found->second.used = ++_clock;
             return found->second.chunk;
         }
     }
-    const ChunkPtr chunk = readChunk(voxels, index, step); // others may pick meanwhile
+    const std::shared_ptr<SampleChunk> chunk =
+        readChunk(voxels, index, step); // others may pick meanwhile
     // A page that could not be read is asked for again.
     if (!voxels.isPaged() || chunk->wasRead()) keep(key, {chunk, layout, modified, 0});
     return chunk;
+}
+
+// Brings what is there up to a count of changes; false where it has to be read. Expects the lock.
+bool SampleCache::update(const Voxels& voxels, std::int64_t index, unsigned modified, Entry& entry)
+{
+    const core::Box3i all =
+        voxels.isPaged() ? core::samplesBelow(voxels.getTree(), voxels.getTree().brick(index))
+                         : entry.chunk->samples();
+    const auto changed = voxels.getChanges(entry.modifiedCount, all);
+    if (!changed || (voxels.isPaged() && !changed->empty())) return false;
+    if (!changed->empty()) {
+        if (entry.chunk.use_count() > 1) return false; // somebody picks with it
+        const auto read = [&voxels](const core::Box3i& box) {
+            return voxels.readSamples(box).value;
+        };
+        _bytes -= entry.chunk->ownBytes();
+        const bool shared = sharesMemory(voxels, all, entry.chunk->block());
+        const bool updated = entry.chunk->update(*changed, shared, read);
+        _bytes += entry.chunk->ownBytes();
+        if (!updated) return false;
+    }
+    entry.modifiedCount = modified;
+    return true;
 }
 
 void SampleCache::keep(const Key& key, Entry entry)

@@ -23,7 +23,7 @@ public:
     static constexpr std::size_t MAXIMUM_BYTES = std::size_t(256) << 20;
 
     /// The samples of a brick (step 0), or of a page at a time step: read where they are not there,
-    /// or have changed. Never null.
+    /// or have changed, of a brick only those that have. Never null.
     ChunkPtr get(const Voxels& voxels, std::int64_t index, int step);
     /// Bricks and pages that were read since construction.
     std::uint64_t readCount() const;
@@ -40,11 +40,12 @@ private:
     };
     struct Entry
     {
-        ChunkPtr chunk;
+        std::shared_ptr<SampleChunk> chunk;
         unsigned layoutCount = 0, modifiedCount = 0;
         std::uint64_t used = 0;
     };
 
+    bool update(const Voxels& voxels, std::int64_t index, unsigned modified, Entry& entry);
     void keep(const Key& key, Entry entry);
     void forgetLeastRecent(const Key& but);
 

@@ -88,6 +88,65 @@ void SampleChunk::fetch(const std::int64_t* indices, int count, int component, d
     _fetch(_view.data, indices, count, _view.components, component, values);
 }
 
+bool SampleChunk::update(const std::vector<core::Box3i>& changed, bool shared, const Read& read)
+{
+    if (!_raw.data || _filled) return false;
+    if (!shared) makeOwn();
+    for (const core::Box3i& box : changed) {
+        const VoxelBlock samples = read(box);
+        if (!samples || !replace(box, samples)) return false;
+    }
+    updateCells(changed);
+    return true;
+}
+
+// A block that nobody else has.
+void SampleChunk::makeOwn()
+{
+    if (_ownBytes > 0 && _block.owner.use_count() == 1) return;
+    std::shared_ptr<unsigned char> copy(new unsigned char[_block.bytes],
+                                        std::default_delete<unsigned char[]>());
+    std::memcpy(copy.get(), _block.data, _block.bytes);
+    _block = {copy, copy.get(), _block.bytes};
+    _raw.data = _view.data = copy.get();
+    _ownBytes = _block.bytes;
+}
+
+// False where there are holes among new samples. The source's own memory has these already.
+bool SampleChunk::replace(const core::Box3i& box, const VoxelBlock& samples)
+{
+    const core::Box3i inside{box.min - _samples.min, box.max - _samples.min};
+    const std::int64_t count = core::sampleCount(box.size());
+    double v;
+    if (canHaveHoles(_raw.type))
+        for (std::int64_t i = 0; i < count; ++i)
+            for (int c = 0; c < _raw.components; ++c) {
+                _fetch(samples.data, &i, 1, _raw.components, c, &v);
+                if (!std::isfinite(v)) return false;
+            }
+    if (_ownBytes > 0)
+        core::pasteRegion(samples.data, inside, _raw.type, _raw.components, _raw.size,
+                          const_cast<unsigned char*>(_block.data));
+    return true;
+}
+
+void SampleChunk::updateCells(const std::vector<core::Box3i>& changed)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    const core::Box3i all{glm::ivec3(0), _raw.size};
+    std::vector<core::Box3i> inside = changed;
+    for (core::Box3i& box : inside)
+        box = {box.min - _samples.min, box.max - _samples.min};
+    for (const auto support : {core::FilterSupport::LINEAR, core::FilterSupport::CUBIC}) {
+        core::CellGrid& grid = _cells[static_cast<int>(support)];
+        if (grid.cellCount() == 0) continue;
+        for (const std::size_t cell : core::cellsTouching(grid, support, inside))
+            core::setCellRange(
+                grid, cell,
+                core::scanRange(_view, core::cellSamples(grid, cell, support, all), _component));
+    }
+}
+
 double SampleChunk::rawSample(const glm::ivec3& place, int component) const
 {
     if (!_raw.data) return std::numeric_limits<double>::quiet_NaN();

@@ -5,14 +5,16 @@
 #include "../../core/voxels/VoxelData.h"
 
 #include <cstdint>
+#include <functional>
 #include <mutex>
+#include <vector>
 
 namespace osgVolumizer {
 namespace picking {
 
 /// The samples of one brick or page in memory, with the ranges of its cells of 8^3 (8 bytes each:
 /// 1.6 % of 8-bit samples). Holes, NaN and infinite values, are filled with the lowest value of the
-/// voxels' range, which is what is drawn of them. Immutable; thread safe.
+/// voxels' range, which is what is drawn of them. Immutable but for update(); thread safe.
 class SampleChunk
 {
 public:
@@ -23,6 +25,14 @@ public:
     /// \param ownBytes that the block takes, 0 where its source has it in memory anyway
     SampleChunk(VoxelBlock block, const core::VoxelView& view, const core::Box3i& samples,
                 int component, double lowest, std::size_t ownBytes);
+
+    /// Takes samples that have changed, those of boxes inside, without a look at the others; false
+    /// where that cannot be done, and all have to be read. Expects nobody else to use the chunk.
+    /// \param shared whether the block is the source's own memory, and so has the new samples
+    /// \param read the samples of a box; empty where the source fails
+    using Read = std::function<VoxelBlock(const core::Box3i&)>;
+    bool update(const std::vector<core::Box3i>& changed, bool shared, const Read& read);
+    const VoxelBlock& block() const { return _block; }
 
     /// False where the source failed.
     bool wasRead() const { return _raw.data != nullptr; }
@@ -46,6 +56,9 @@ private:
                            int component, double* values);
 
     void fillHoles(double lowest);
+    void makeOwn();
+    bool replace(const core::Box3i& box, const VoxelBlock& samples);
+    void updateCells(const std::vector<core::Box3i>& changed);
 
     VoxelBlock _block, _filled;
     core::VoxelView _raw, _view;

@@ -7,6 +7,7 @@
 #include <osg/ColorMask>
 #include <osg/DepthRangeIndexed>
 #include <osg/Fog>
+#include <osg/PolygonMode>
 
 #include <glm/geometric.hpp>
 
@@ -65,6 +66,13 @@ std::vector<const osg::ClipPlane*> effectiveClipPlanes(const osgUtil::StateGraph
 bool isOn(const osgUtil::StateGraph* graph, GLenum mode, bool byDefault)
 {
     return isOn(pathOf(graph), mode, byDefault);
+}
+
+bool showsOutlines(const osgUtil::StateGraph* graph)
+{
+    const auto* mode = effective<osg::PolygonMode>(graph, StateAttribute::POLYGONMODE);
+    return mode && (mode->getMode(osg::PolygonMode::FRONT) != osg::PolygonMode::FILL ||
+                    mode->getMode(osg::PolygonMode::BACK) != osg::PolygonMode::FILL);
 }
 
 bool writesDepth(const osgUtil::StateGraph* graph)

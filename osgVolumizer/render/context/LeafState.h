@@ -39,6 +39,9 @@ inline bool isDepthTested(const osgUtil::StateGraph* graph)
     return isOn(graph, GL_DEPTH_TEST, true);
 }
 
+/// Whether an osg::PolygonMode shows lines or points of what is drawn in a graph.
+bool showsOutlines(const osgUtil::StateGraph* graph);
+
 /// Whether what is drawn in a graph may change the depth buffer.
 bool writesDepth(const osgUtil::StateGraph* graph);
 

@@ -149,6 +149,27 @@ bool select(VolumeInstance& volume, osgUtil::CullVisitor& visitor)
     return !volume.bricks.empty();
 }
 
+// What a volume is under a PolygonMode of lines or points.
+void drawOutlines(VolumeGeometry& geometry, const Voxels* voxels, osgUtil::CullVisitor& visitor)
+{
+    if (voxels && !voxels->valid()) voxels = nullptr;
+    const osg::ref_ptr<GeometryCache> cache = renderData<GeometryCache>(geometry);
+    const auto prepared = cache->get(geometry, voxels);
+    if (!prepared) return;
+    if (visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR &&
+        !visitor.updateCalculatedNearFar(*visitor.getModelViewMatrix(), geometry.getBoundingBox()))
+        return;
+    const osg::ref_ptr<osg::Geometry> lines = cache->outlines(geometry, voxels);
+    const osg::ref_ptr<osg::RefMatrix> toEye =
+        new osg::RefMatrix(toOsg(toGlm(*visitor.getModelViewMatrix()) * prepared->frameToObject));
+    const glm::dvec3 center = prepared->bounds.center();
+    visitor.pushStateSet(lines->getStateSet());
+    visitor.addDrawableAndDepth(
+        lines, toEye.get(),
+        static_cast<float>(-(osg::Vec3d(center.x, center.y, center.z) * *toEye).z()));
+    visitor.popStateSet();
+}
+
 } // namespace
 
 void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
@@ -163,6 +184,11 @@ void cull(VolumeGeometry& geometry, osgUtil::CullVisitor& visitor)
     if (!appearance) return;
     osg::StateSet* own = geometry.getStateSet();
     if (own) visitor.pushStateSet(own);
+    if (showsOutlines(visitor.getCurrentStateGraph())) {
+        drawOutlines(geometry, appearance->getVoxels(), visitor);
+        if (own) visitor.popStateSet();
+        return;
+    }
     std::unique_ptr<VolumeInstance> volume = makeInstance(geometry, *appearance, visitor);
     const auto isInView = [&] {
         return visitor.getComputeNearFarMode() == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR ||

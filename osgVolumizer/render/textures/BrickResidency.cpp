@@ -28,6 +28,29 @@ osg::ref_ptr<const osg::Image> BrickResidency::texels(const Voxels& voxels, std:
     return makeTexels(voxels, block, voxels.getLayout().brick(brick).samples.size(), gradients);
 }
 
+std::optional<std::vector<core::Box3i>> BrickResidency::changes(const Voxels& voxels,
+                                                                std::int64_t brick, bool gradients,
+                                                                unsigned modifiedCount)
+{
+    const core::Box3i samples = voxels.getLayout().brick(brick).samples;
+    auto boxes = voxels.getChanges(modifiedCount, samples);
+    if (boxes && gradients) boxes = core::coveringBoxes(core::grown(*boxes, 1, samples));
+    return boxes;
+}
+
+TexelBox BrickResidency::texels(const Voxels& voxels, std::int64_t brick, bool gradients,
+                                const core::Box3i& box)
+{
+    // Differences of the samples around the box, as all of the brick would have them.
+    const core::Box3i samples = voxels.getLayout().brick(brick).samples;
+    const core::Box3i needed =
+        gradients ? intersection(core::Box3i{box.min - 1, box.max + 1}, samples) : box;
+    const Result<VoxelBlock> block = voxels.readSamples(needed);
+    if (block.ok()) return {makeTexels(voxels, *block, needed.size(), gradients), needed.min};
+    reportError(block.status);
+    return {};
+}
+
 osg::ref_ptr<BrickTexture> BrickResidency::ask(const Voxels& voxels, const BrickRequest& request)
 {
     const std::int64_t brick = request.brick;
@@ -43,6 +66,13 @@ osg::ref_ptr<BrickTexture> BrickResidency::ask(const Voxels& voxels, const Brick
         if (found != _entries.end() && found->second.modifiedCount == modified &&
             found->second.layoutCount == layout)
             return answer(found->second);
+        if (found != _entries.end() && found->second.texture &&
+            found->second.layoutCount == layout &&
+            voxels.getChanges(found->second.modifiedCount,
+                              voxels.getLayout().brick(brick).samples)) {
+            found->second.modifiedCount = modified; // its texture is updated when it is drawn
+            return answer(found->second);
+        }
     }
     const bool readable = _cells.isScanned(voxels, brick) || load(voxels, brick);
     std::lock_guard<std::mutex> lock(_mutex);

@@ -12,8 +12,10 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 namespace osgVolumizer {
 namespace render {
@@ -54,8 +56,17 @@ public:
     static osg::ref_ptr<const osg::Image> texels(const Voxels& voxels, std::int64_t brick,
                                                  bool gradients);
 
+    /// Boxes of a brick's texels, voxel frame, that have changed since its modified count was
+    /// another; nothing where all may have. Gradients change next to samples that do.
+    static std::optional<std::vector<core::Box3i>> changes(const Voxels& voxels, std::int64_t brick,
+                                                           bool gradients, unsigned modifiedCount);
+    /// The texels of a box of a brick, and perhaps more. A source that fails is reported.
+    static TexelBox texels(const Voxels& voxels, std::int64_t brick, bool gradients,
+                           const core::Box3i& box);
+
     /// The texture of a brick; it is made in a context when that first draws it. Null where the
-    /// source fails, which is found out on the first call: that reads the brick at once.
+    /// source fails, which is found out on the first call: that reads the brick at once. It stays
+    /// the same where only a part of the brick has changed.
     osg::ref_ptr<BrickTexture> ask(const Voxels& voxels, const BrickRequest& request);
     /// The texture for all bricks; no brick's own is more important.
     osg::ref_ptr<JoinedTexture> joined(const Voxels& voxels, bool gradients, unsigned frame);

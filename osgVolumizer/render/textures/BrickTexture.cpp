@@ -76,7 +76,7 @@ bool BrickTexture::isAnywhere() const
 }
 
 CoarseTexture BrickTexture::apply(osg::RenderInfo& renderInfo, const ContextLimits& limits,
-                                  const Load& load, unsigned unit)
+                                  const Load& load, unsigned unit, const BrickChanges* changes)
 {
     osg::State& state = *renderInfo.getState();
     const std::shared_ptr<Copy> copy = copyIn(state.getContextID());
@@ -88,13 +88,57 @@ CoarseTexture BrickTexture::apply(osg::RenderInfo& renderInfo, const ContextLimi
     {
         std::lock_guard<std::mutex> lock(copy->mutex);
         if (copy->refused) return {};
-        if (applyMade()) return coarseTexture(*copy->texture, _size);
+        const bool current = !changes || copy->modifiedCount == changes->modifiedCount;
+        if (applyMade() && current) return coarseTexture(*copy->texture, _size);
     }
+    if (changes && update(renderInfo, *changes, *copy, unit))
+        return coarseTexture(*copy->texture, _size);
     const osg::ref_ptr<const osg::Image> texels = load();
     if (!texels) return {};
     std::lock_guard<std::mutex> lock(copy->mutex);
-    if (!applyMade()) make(renderInfo, limits, *texels, *copy, unit);
+    const bool current = !changes || copy->modifiedCount == changes->modifiedCount;
+    if (!applyMade() || !current) make(renderInfo, limits, *texels, *copy, unit);
+    if (changes) copy->modifiedCount = changes->modifiedCount;
     return copy->texture ? coarseTexture(*copy->texture, _size) : CoarseTexture();
+}
+
+// Writes what has changed; false where all has to be written. Texels are loaded without the lock.
+bool BrickTexture::update(osg::RenderInfo& renderInfo, const BrickChanges& changes, Copy& copy,
+                          unsigned unit) const
+{
+    osg::State& state = *renderInfo.getState();
+    unsigned modifiedCount = 0;
+    {
+        std::lock_guard<std::mutex> lock(copy.mutex);
+        if (!copy.texture || !copy.texture->getTextureObject(state.getContextID()) ||
+            copy.texture->getTextureWidth() != _size.x ||
+            copy.texture->getTextureHeight() != _size.y ||
+            copy.texture->getTextureDepth() != _size.z)
+            return false;
+        modifiedCount = copy.modifiedCount;
+    }
+    const auto boxes = changes.since(modifiedCount);
+    if (!boxes) return false;
+    std::vector<TexelBox> texels;
+    for (const core::Box3i& box : *boxes) {
+        texels.push_back(changes.load(box));
+        if (!texels.back().image) return false;
+    }
+    std::lock_guard<std::mutex> lock(copy.mutex);
+    if (!copy.texture || copy.modifiedCount != modifiedCount) return false;
+    state.applyTextureAttribute(unit, copy.texture.get());
+    state.setActiveTextureUnit(unit);
+    state.unbindPixelBufferObject();
+    double count = 0.0;
+    for (std::size_t i = 0; i < boxes->size(); ++i) {
+        const core::Box3i& box = (*boxes)[i];
+        writeTexels(state, *texels[i].image, box.min - texels[i].origin, box.min - changes.origin,
+                    box.size());
+        count += double(core::sampleCount(box.size()));
+    }
+    if (count > 0.0) countUploaded(renderInfo, 1.0, count, count * double(_format.texelBytes()));
+    copy.modifiedCount = changes.modifiedCount;
+    return true;
 }
 
 void BrickTexture::make(osg::RenderInfo& renderInfo, const ContextLimits& limits,
@@ -116,7 +160,8 @@ void BrickTexture::make(osg::RenderInfo& renderInfo, const ContextLimits& limits
         state.unbindPixelBufferObject();
         if (applyAllocated(state, AllocationRequest::BRICK, *copy.texture, unit)) {
             writeTexels(state, *own, glm::ivec3(0), glm::ivec3(0), size);
-            countUploaded(renderInfo, 1.0, static_cast<double>(bytes()));
+            countUploaded(renderInfo, 1.0, double(core::sampleCount(_size)),
+                          static_cast<double>(bytes()));
             if (size != _size) reportCoarser(_size, size, limits.texture3DSize);
             return;
         }
@@ -149,10 +194,11 @@ void BrickTexture::releaseGLObjects(osg::State* state)
     }
 }
 
-void countUploaded(osg::RenderInfo& renderInfo, double bricks, double bytes)
+void countUploaded(osg::RenderInfo& renderInfo, double bricks, double texels, double bytes)
 {
     const osg::FrameStamp* stamp = renderInfo.getState()->getFrameStamp();
     count(renderInfo.getCurrentCamera(), stamp, "osgVolumizer bricks uploaded", bricks);
+    count(renderInfo.getCurrentCamera(), stamp, "osgVolumizer voxels uploaded", texels);
     count(renderInfo.getCurrentCamera(), stamp, "osgVolumizer bytes uploaded", bytes);
 }
 

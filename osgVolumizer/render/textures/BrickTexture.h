@@ -4,6 +4,7 @@
 #include "CoarseTexture.h"
 #include "ResidentTexture.h"
 #include "TexelFormat.h"
+#include "Texels.h"
 
 #include <osg/Image>
 #include <osg/RenderInfo>
@@ -14,12 +15,24 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <vector>
 
 namespace osgVolumizer {
 namespace render {
 
-/// One brick, in one state of its data, as a texture in each context that has drawn it. Keeps no
-/// texels: they are asked for when a context lacks them. Thread safe.
+/// In which state a brick's data are, and how a texture of another state is brought up to it.
+struct BrickChanges
+{
+    unsigned modifiedCount = 0;
+    glm::ivec3 origin{0}; ///< voxel frame; of the brick's first sample
+    /// Boxes of texels, voxel frame, that differ from those of a state; nothing where all may.
+    std::function<std::optional<std::vector<core::Box3i>>(unsigned modifiedCount)> since;
+    std::function<TexelBox(const core::Box3i&)> load;
+};
+
+/// One brick as a texture in each context that has drawn it. Keeps no texels: they are asked for
+/// when a context lacks them. Thread safe.
 class BrickTexture : public ResidentTexture
 {
 public:
@@ -33,9 +46,10 @@ public:
 
     /// Applies the texture to a unit, as large and in such a format as suits the context; coarser
     /// where the card refuses it, and none where it refuses that too (both reported once). Counts
-    /// what is uploaded. Call in the draw thread.
+    /// what is uploaded. With `changes` a context that has the texels of an earlier state is given
+    /// those that have changed. Call in the draw thread.
     CoarseTexture apply(osg::RenderInfo& renderInfo, const ContextLimits& limits, const Load& load,
-                        unsigned unit);
+                        unsigned unit, const BrickChanges* changes = nullptr);
     bool isIn(unsigned contextId) const override;
     /// Whether any context has it.
     bool isAnywhere() const;
@@ -50,9 +64,12 @@ private:
         std::mutex mutex; ///< of what follows; not held while texels are loaded
         osg::ref_ptr<osg::Texture3D> texture;
         bool refused = false;
+        unsigned modifiedCount = 0; ///< the state that the texels are of
     };
 
     std::shared_ptr<Copy> copyIn(unsigned contextId);
+    bool update(osg::RenderInfo& renderInfo, const BrickChanges& changes, Copy& copy,
+                unsigned unit) const;
     void make(osg::RenderInfo& renderInfo, const ContextLimits& limits, const osg::Image& texels,
               Copy& copy, unsigned unit) const;
 
@@ -63,8 +80,8 @@ private:
     std::map<unsigned, std::shared_ptr<Copy>> _copies; ///< by context
 };
 
-/// Counts bricks whose texels went to GL in this frame.
-void countUploaded(osg::RenderInfo& renderInfo, double bricks, double bytes);
+/// Counts bricks whose texels went to GL in this frame, all of them or a part, and texels.
+void countUploaded(osg::RenderInfo& renderInfo, double bricks, double texels, double bytes);
 
 } // namespace render
 } // namespace osgVolumizer

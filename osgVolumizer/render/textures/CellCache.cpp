@@ -2,6 +2,8 @@
 
 #include "BrickResidency.h"
 
+#include <iterator>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -34,10 +36,12 @@ std::shared_ptr<const BrickCells> CellCache::get(const Voxels& voxels, std::int6
     Brick& entry = *held;
     std::lock_guard<std::mutex> lock(entry.mutex);
     if (entry.modifiedCount != modified || entry.layoutCount != layout) {
+        if (entry.layoutCount != layout || !update(voxels, brick, entry)) {
+            entry.linear = entry.cubic = nullptr;
+            entry.layers = nullptr;
+        }
         entry.modifiedCount = modified;
         entry.layoutCount = layout;
-        entry.linear = entry.cubic = nullptr;
-        entry.layers = nullptr;
         entry.cells.clear();
     }
     if (const auto* known = entry.cells.find(key)) return *known;
@@ -55,15 +59,49 @@ std::shared_ptr<const BrickCells> CellCache::join(const Voxels& voxels, const Oc
     std::lock_guard<std::mutex> lock(_mutex);
     _joined.removeIf([layout](const auto& entry) { return entry.value.layoutCount != layout; });
     Joined* known = _joined.find(key);
-    Joined& joined = known ? *known : _joined.add(key, {layout, {}, nullptr});
+    Joined& joined = known ? *known : _joined.add(key, {layout, {}, {}, nullptr});
     bool changed = !joined.cells;
+    for (auto part = joined.parts.begin(); part != joined.parts.end();) {
+        const bool old = joined.modifiedCounts[part->first] != voxels.getModifiedCount(part->first);
+        changed = changed || old;
+        part = old ? joined.parts.erase(part) : std::next(part);
+    }
     for (const Part& part : parts) {
         auto& cells = joined.parts[part.first];
         changed = changed || cells != part.second;
         cells = part.second;
+        joined.modifiedCounts[part.first] = voxels.getModifiedCount(part.first);
     }
     if (changed) joined.cells = joinCells(voxels, joined.parts);
     return joined.cells;
+}
+
+// Looks again at the cells whose samples have changed; false where all have to be looked at.
+bool CellCache::update(const Voxels& voxels, std::int64_t brick, Brick& entry)
+{
+    if (!entry.layers) return false;
+    const core::Box3i samples = voxels.getLayout().brick(brick).samples;
+    const auto changed = voxels.getChanges(entry.modifiedCount, samples);
+    if (!changed) return false;
+    bool readable = true;
+    const auto rangeOf = [&](const core::Box3i& box) {
+        const Result<VoxelBlock> block = voxels.readSamples(box);
+        readable = readable && block.ok();
+        if (!block.ok()) return core::ValueRange();
+        return core::scanRange({block->data, voxels.getType(), voxels.getComponents(), box.size()},
+                               shownComponent(voxels));
+    };
+    core::CellGrid* const grids[] = {entry.linear.get(), entry.cubic.get()};
+    for (const auto support : {core::FilterSupport::LINEAR, core::FilterSupport::CUBIC}) {
+        core::CellGrid* const grid = grids[static_cast<int>(support)];
+        if (!grid) continue;
+        for (const std::size_t cell : core::cellsTouching(*grid, support, *changed))
+            core::setCellRange(*grid, cell,
+                               rangeOf(core::cellSamples(*grid, cell, support, samples)));
+    }
+    const core::CellGrid* const known = entry.linear ? entry.linear.get() : entry.cubic.get();
+    if (known && readable) core::rescanLayers(*entry.layers, *known, samples, *changed, rangeOf);
+    return known && readable;
 }
 
 bool CellCache::scan(const Voxels& voxels, std::int64_t brick, bool cubic, Brick& entry)

@@ -23,7 +23,7 @@ public:
                                           const OccupancyQuery& query);
     using Part = std::pair<std::int64_t, std::shared_ptr<const BrickCells>>;
     /// The cells of all bricks as of one: of these, by number, as get() gave them, and of those
-    /// asked for before. Cells of other bricks show nothing.
+    /// asked for before and have not changed since. Cells of other bricks show nothing.
     std::shared_ptr<const BrickCells> join(const Voxels& voxels, const OccupancyQuery& query,
                                            const std::vector<Part>& parts);
     /// Whether a brick has been read for its cells, in the present state of its data.
@@ -38,17 +38,19 @@ private:
     {
         mutable std::mutex mutex; ///< held while the brick is read and scanned
         unsigned modifiedCount = 0, layoutCount = 0;
-        std::shared_ptr<const core::CellGrid> linear, cubic; ///< by the support of the filter
-        std::shared_ptr<const core::LayerRanges> layers;
+        std::shared_ptr<core::CellGrid> linear, cubic; ///< by the support of the filter
+        std::shared_ptr<core::LayerRanges> layers;
         core::RecencyCache<OccupancyKey, std::shared_ptr<const BrickCells>> cells{CAPACITY};
     };
     struct Joined
     {
         unsigned layoutCount = 0;
         std::map<std::int64_t, std::shared_ptr<const BrickCells>> parts;
+        std::map<std::int64_t, unsigned> modifiedCounts; ///< of the parts' data
         std::shared_ptr<const BrickCells> cells;
     };
 
+    static bool update(const Voxels& voxels, std::int64_t brick, Brick& entry);
     static bool scan(const Voxels& voxels, std::int64_t brick, bool cubic, Brick& entry);
     std::vector<std::shared_ptr<Brick>> allBricks() const;
 

@@ -18,7 +18,16 @@ CoarseTexture DrawnBrick::apply(osg::RenderInfo& renderInfo, const ContextLimits
         BrickResidency::of(*voxels)->makeRoom(*renderInfo.getState(), index, gradients, *texture);
         return BrickResidency::texels(*voxels, index, gradients);
     };
-    return texture->apply(renderInfo, limits, load, unit);
+    BrickChanges changes;
+    changes.modifiedCount = voxels->getModifiedCount(index);
+    changes.origin = voxels->getLayout().brick(index).samples.min;
+    changes.since = [this](unsigned modifiedCount) {
+        return BrickResidency::changes(*voxels, index, gradients, modifiedCount);
+    };
+    changes.load = [this](const core::Box3i& box) {
+        return BrickResidency::texels(*voxels, index, gradients, box);
+    };
+    return texture->apply(renderInfo, limits, load, unit, &changes);
 }
 
 // Nothing is read here: what the context has lost since the frame was culled is left out.

@@ -16,7 +16,14 @@ bool JoinedBricks::apply(osg::RenderInfo& renderInfo, const ContextLimits& limit
     const auto load = [this](std::int64_t brick) {
         return BrickResidency::texels(*voxels, brick, gradients);
     };
-    return texture->apply(renderInfo, limits, pieces, load, unit);
+    JoinedTexture::Changes changes;
+    changes.since = [this](std::int64_t brick, unsigned modifiedCount) {
+        return BrickResidency::changes(*voxels, brick, gradients, modifiedCount);
+    };
+    changes.load = [this](std::int64_t brick, const core::Box3i& box) {
+        return BrickResidency::texels(*voxels, brick, gradients, box);
+    };
+    return texture->apply(renderInfo, limits, pieces, load, changes, unit);
 }
 
 } // namespace render

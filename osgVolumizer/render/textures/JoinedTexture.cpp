@@ -6,6 +6,7 @@
 #include "Texels.h"
 
 #include "../../core/Text.h"
+#include "../../core/voxels/ChangeLog.h"
 #include "../../core/voxels/VoxelData.h"
 
 #include <osg/GLExtensions>
@@ -61,6 +62,14 @@ bool JoinedTexture::Contents::lacks(const JoinedPiece& piece) const
     const auto found = bricks.find(piece.brick);
     return found == bricks.end() || found->second.modifiedCount != piece.modifiedCount ||
            (found->second.empty && !piece.emptyTexel);
+}
+
+std::optional<unsigned> JoinedTexture::Contents::written(const JoinedPiece& piece) const
+{
+    const auto found = bricks.find(piece.brick);
+    if (found == bricks.end() || found->second.empty || !(found->second.samples == piece.samples))
+        return std::nullopt;
+    return found->second.modifiedCount;
 }
 
 std::shared_ptr<JoinedTexture::Contents> JoinedTexture::find(unsigned contextId) const
@@ -139,8 +148,9 @@ void JoinedTexture::writeEmpty(osg::State& state, const JoinedPiece& piece, Cont
 
 // Applies the texture, and writes the empty pieces; gives those whose texels have to be loaded.
 bool JoinedTexture::prepare(osg::State& state, const ContextLimits& limits,
-                            const std::vector<JoinedPiece>& pieces, Contents& contents,
-                            unsigned unit, std::vector<const JoinedPiece*>& lacking) const
+                            const std::vector<JoinedPiece>& pieces, const Changes& changes,
+                            Contents& contents, unsigned unit,
+                            std::vector<const JoinedPiece*>& lacking) const
 {
     std::lock_guard<std::mutex> lock(contents.mutex);
     if (contents.refused) return false;
@@ -154,10 +164,15 @@ bool JoinedTexture::prepare(osg::State& state, const ContextLimits& limits,
     if (std::none_of(pieces.begin(), pieces.end(), lacks)) return true;
     state.setActiveTextureUnit(unit);
     // Empty bricks first, since they share samples with others, which are then written again.
+    // One that has all its texels, of which some have changed, stays: its neighbours do not matter.
+    const auto isKnown = [&](const JoinedPiece& piece) {
+        const auto count = contents.written(piece);
+        return count && changes.since(piece.brick, *count);
+    };
     for (const JoinedPiece& piece : pieces)
-        if (piece.emptyTexel && lacks(piece)) writeEmpty(state, piece, contents);
+        if (piece.emptyTexel && lacks(piece) && !isKnown(piece)) writeEmpty(state, piece, contents);
     for (const JoinedPiece& piece : pieces)
-        if (!piece.emptyTexel && lacks(piece)) lacking.push_back(&piece);
+        if (lacks(piece)) lacking.push_back(&piece);
     return true;
 }
 
@@ -174,22 +189,57 @@ bool JoinedTexture::write(osg::State& state, const JoinedPiece& piece, const osg
     return true;
 }
 
+// Writes what of a piece has changed; false where all of it has to be written.
+bool JoinedTexture::update(osg::RenderInfo& renderInfo, const JoinedPiece& piece,
+                           const Changes& changes, Contents& contents) const
+{
+    osg::State& state = *renderInfo.getState();
+    std::optional<unsigned> before;
+    {
+        std::lock_guard<std::mutex> lock(contents.mutex);
+        before = contents.written(piece);
+    }
+    const auto boxes =
+        before ? changes.since(piece.brick, *before) : std::optional<std::vector<core::Box3i>>();
+    if (!boxes) return false;
+    const std::vector<core::Box3i> parts = core::clipped(*boxes, piece.samples);
+    std::vector<TexelBox> texels; // loaded without the lock
+    for (const core::Box3i& part : parts) {
+        texels.push_back(changes.load(piece.brick, part));
+        if (!texels.back().image) return false;
+    }
+    std::lock_guard<std::mutex> lock(contents.mutex);
+    if (!contents.texture || contents.written(piece) != before) return false;
+    double count = 0.0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        writeTexels(state, *texels[i].image, parts[i].min - texels[i].origin, parts[i].min,
+                    parts[i].size());
+        count += double(core::sampleCount(parts[i].size()));
+    }
+    if (count > 0.0) countUploaded(renderInfo, 1.0, count, count * double(_format.texelBytes()));
+    contents.bricks[piece.brick].modifiedCount = piece.modifiedCount;
+    return true;
+}
+
 bool JoinedTexture::apply(osg::RenderInfo& renderInfo, const ContextLimits& limits,
-                          const std::vector<JoinedPiece>& pieces, const Load& load, unsigned unit)
+                          const std::vector<JoinedPiece>& pieces, const Load& load,
+                          const Changes& changes, unsigned unit)
 {
     osg::State& state = *renderInfo.getState();
     const std::shared_ptr<Contents> contents = contentsIn(state.getContextID());
     std::vector<const JoinedPiece*> lacking;
-    if (!prepare(state, limits, pieces, *contents, unit, lacking)) return false;
-    double bricks = 0.0, bytes = 0.0;
+    if (!prepare(state, limits, pieces, changes, *contents, unit, lacking)) return false;
+    double bricks = 0.0, count = 0.0, bytes = 0.0;
     for (const JoinedPiece* piece : lacking) {
+        if (update(renderInfo, *piece, changes, *contents)) continue;
         const osg::ref_ptr<const osg::Image> texels = load(piece->brick);
         if (!texels) continue;
         if (!write(state, *piece, *texels, *contents)) break;
         bricks += 1.0;
+        count += double(texels->s()) * texels->t() * texels->r();
         bytes += double(texelBytes(*texels)) * texels->s() * texels->t() * texels->r();
     }
-    if (bricks > 0.0) countUploaded(renderInfo, bricks, bytes);
+    if (bricks > 0.0) countUploaded(renderInfo, bricks, count, bytes);
     return true;
 }
 

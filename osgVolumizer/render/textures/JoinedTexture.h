@@ -3,6 +3,7 @@
 #include "../context/ContextLimits.h"
 #include "ResidentTexture.h"
 #include "TexelFormat.h"
+#include "Texels.h"
 
 #include "../../core/geometry/Box.h"
 
@@ -16,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -42,16 +44,26 @@ class JoinedTexture : public ResidentTexture
 public:
     /// A brick's texels; null where the source fails.
     using Load = std::function<osg::ref_ptr<const osg::Image>(std::int64_t brick)>;
+    /// Where those come from of which only some have changed, as BrickChanges.
+    struct Changes
+    {
+        std::function<std::optional<std::vector<core::Box3i>>(std::int64_t brick,
+                                                              unsigned modifiedCount)>
+            since;
+        std::function<TexelBox(std::int64_t brick, const core::Box3i&)> load;
+    };
 
     /// \param size of the volume, samples
     JoinedTexture(const TexelFormat& format, const glm::ivec3& size) : _format(format), _size(size)
     {
     }
 
-    /// Applies the texture to a unit, after writing those of the pieces that the context lacks;
-    /// counts what is uploaded. False where the card refuses the texture. Call in the draw thread.
+    /// Applies the texture to a unit, after writing those of the pieces that the context lacks, or
+    /// what of them has changed; counts what is uploaded. False where the card refuses the texture.
+    /// Call in the draw thread.
     bool apply(osg::RenderInfo& renderInfo, const ContextLimits& limits,
-               const std::vector<JoinedPiece>& pieces, const Load& load, unsigned unit);
+               const std::vector<JoinedPiece>& pieces, const Load& load, const Changes& changes,
+               unsigned unit);
     /// Whether the context has refused the texture.
     bool isRefused(unsigned contextId) const;
     /// Whether the context has the texels of a brick in one state of its data, or what stands for
@@ -78,6 +90,8 @@ private:
         std::atomic<bool> refused{false};
 
         bool lacks(const JoinedPiece& piece) const;
+        /// The count of the texels of all of a piece that are there; nothing where they are not.
+        std::optional<unsigned> written(const JoinedPiece& piece) const;
     };
 
     std::shared_ptr<Contents> find(unsigned contextId) const;
@@ -86,8 +100,10 @@ private:
     bool make(osg::State& state, const ContextLimits& limits, Contents& contents,
               unsigned unit) const;
     bool prepare(osg::State& state, const ContextLimits& limits,
-                 const std::vector<JoinedPiece>& pieces, Contents& contents, unsigned unit,
-                 std::vector<const JoinedPiece*>& lacking) const;
+                 const std::vector<JoinedPiece>& pieces, const Changes& changes, Contents& contents,
+                 unsigned unit, std::vector<const JoinedPiece*>& lacking) const;
+    bool update(osg::RenderInfo& renderInfo, const JoinedPiece& piece, const Changes& changes,
+                Contents& contents) const;
     static void writeEmpty(osg::State& state, const JoinedPiece& piece, Contents& contents);
     static bool write(osg::State& state, const JoinedPiece& piece, const osg::Image& texels,
                       Contents& contents);

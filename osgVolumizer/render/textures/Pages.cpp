@@ -91,21 +91,42 @@ std::int64_t Pages::bytesOf(const std::map<Key, Entry>& entries)
 void Pages::begin(const Voxels& voxels)
 {
     const unsigned modified = voxels.getModifiedCount(-1), layout = voxels.getLayoutCount();
+    const unsigned changes = voxels.getChangeCount();
     std::map<Key, Entry> forgotten; // freed without the lock
     {
         std::lock_guard<std::mutex> lock(_mutex);
         _textureBudget = voxels.getTextureBudget();
-        if (_voxels.get() == &voxels && _modified == modified && _layout == layout) return;
+        if (_voxels.get() == &voxels && _modified == modified && _layout == layout) {
+            if (_changes == changes) return;
+            forgetChanged(voxels, forgotten);
+        } else {
+            forgotten.swap(_entries);
+            for (auto& view : _views)
+                view.second.state = {};
+        }
         _voxels = &voxels;
         _modified = modified;
         _layout = layout;
+        _changes = changes;
         ++_generation;
         _reported = false;
-        forgotten.swap(_entries);
-        for (auto& view : _views)
-            view.second.state = {};
     }
     PageQueue::instance().released(bytesOf(forgotten));
+}
+
+// Expects the lock. Also forgets what is being read: it may be of the state before.
+void Pages::forgetChanged(const Voxels& voxels, std::map<Key, Entry>& forgotten)
+{
+    for (auto next = _entries.begin(); next != _entries.end();) {
+        const core::Box3i samples =
+            core::samplesBelow(voxels.getTree(), voxels.getTree().brick(next->first.page));
+        const auto changed = voxels.getChanges(_changes, samples);
+        next->second.reading = false;
+        const auto entry = next++;
+        if (changed && changed->empty() && entry->second.content) continue;
+        forgotten.insert(std::move(*entry));
+        _entries.erase(entry);
+    }
 }
 
 Pages::Page Pages::look(const Look& look)

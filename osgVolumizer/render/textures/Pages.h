@@ -58,7 +58,8 @@ public:
 
     ~Pages() override;
 
-    /// Forgets pages of another state of the data. Call before the others, in each frame.
+    /// Forgets pages of another state of the data, where only samples have changed those that
+    /// stand for any. Call before the others, in each frame.
     void begin(const Voxels& voxels);
     /// Marks a page as used.
     Page look(const Look& look);
@@ -145,6 +146,7 @@ private:
 
     Pages() = default;
     static std::int64_t bytesOf(const std::map<Key, Entry>& entries);
+    void forgetChanged(const Voxels& voxels, std::map<Key, Entry>& forgotten);
     void fail(const Key& key, const Status& status);
     ContentPtr findTwin(const Key& key, const osg::Image& texels) const;
     std::int64_t keep(const Key& key, const ContentPtr& twin, const ContentPtr& content);
@@ -154,7 +156,7 @@ private:
 
     mutable std::mutex _mutex; ///< of what follows
     osg::observer_ptr<const Voxels> _voxels;
-    unsigned _modified = 0, _layout = 0, _generation = 0;
+    unsigned _modified = 0, _layout = 0, _changes = 0, _generation = 0;
     unsigned _frame = 0;             ///< the last one that looked at anything
     std::int64_t _textureBudget = 0; ///< of these; 0: none
     std::map<Key, Entry> _entries;

@@ -1,5 +1,6 @@
 #include "CutInForce.h"
 
+#include "../../VolumeCut.h"
 #include "../textures/BrickCells.h"
 #include "../textures/CutTextures.h"
 

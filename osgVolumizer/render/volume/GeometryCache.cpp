@@ -1,5 +1,6 @@
 #include "GeometryCache.h"
 
+#include "../../Outlines.h"
 #include "../../VolumeGeometry.h"
 #include "../../Voxels.h"
 #include "SliceCache.h"
@@ -9,14 +10,46 @@ namespace render {
 
 GeometryCache::GeometryCache() : _slices(std::make_shared<SliceCache>()) {}
 
+GeometryCache::Key GeometryCache::keyOf(const VolumeGeometry& geometry, const Voxels* voxels)
+{
+    return {geometry.getModifiedCount(), voxels, voxels ? voxels->getLayoutCount() : 0};
+}
+
 std::shared_ptr<const PreparedGeometry> GeometryCache::get(const VolumeGeometry& geometry,
                                                            const Voxels* voxels)
 {
-    const Key key{geometry.getModifiedCount(), voxels, voxels ? voxels->getLayoutCount() : 0};
+    const Key key = keyOf(geometry, voxels);
     std::lock_guard<std::mutex> lock(_mutex);
     if (const auto* known = _prepared.find(key)) return *known;
     const auto set = geometry.getTetraSet();
     return _prepared.add(key, set->empty() ? nullptr : prepareGeometry(*set, voxels));
+}
+
+osg::ref_ptr<osg::Geometry> GeometryCache::outlines(const VolumeGeometry& geometry,
+                                                    const Voxels* voxels)
+{
+    const auto prepared = get(geometry, voxels);
+    const Key key = keyOf(geometry, voxels);
+    std::lock_guard<std::mutex> lock(_mutex);
+    if (const auto* known = _outlines.find(key)) return *known;
+    core::LineSet lines;
+    core::outlineTetrahedra(prepared->tetras, lines);
+    if (voxels && prepared->voxelFrame) core::outlineBoxes(brickOutlines(*voxels), lines);
+    return _outlines.add(key, createLines(lines));
+}
+
+void GeometryCache::resizeGLObjectBuffers(unsigned int maximum)
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& lines : _outlines)
+        lines.value->resizeGLObjectBuffers(maximum);
+}
+
+void GeometryCache::releaseGLObjects(osg::State* state) const
+{
+    std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& lines : _outlines)
+        lines.value->releaseGLObjects(state);
 }
 
 } // namespace render

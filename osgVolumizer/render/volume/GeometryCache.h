@@ -4,6 +4,8 @@
 #include "../context/RenderDataAccess.h"
 #include "PreparedGeometry.h"
 
+#include <osg/Geometry>
+
 #include <memory>
 #include <mutex>
 
@@ -24,10 +26,12 @@ public:
     SliceCache& slices() const { return *_slices; }
     std::shared_ptr<const PreparedGeometry> get(const VolumeGeometry& geometry,
                                                 const Voxels* voxels);
+    /// The edges of the tetrahedra, and of the bricks where these are in the same frame, as lines
+    /// in the frame of the prepared geometry. Expects that there are tetrahedra.
+    osg::ref_ptr<osg::Geometry> outlines(const VolumeGeometry& geometry, const Voxels* voxels);
 
-    // All of it is in the memory of the process.
-    void resizeGLObjectBuffers(unsigned int) override {}
-    void releaseGLObjects(osg::State*) const override {}
+    void resizeGLObjectBuffers(unsigned int maximum) override;
+    void releaseGLObjects(osg::State* state) const override;
 
 private:
     struct Key
@@ -43,9 +47,12 @@ private:
     };
     static constexpr std::size_t CAPACITY = 4;
 
+    static Key keyOf(const VolumeGeometry& geometry, const Voxels* voxels);
+
     std::shared_ptr<SliceCache> _slices;
-    std::mutex _mutex;
+    mutable std::mutex _mutex; ///< of what follows
     core::RecencyCache<Key, std::shared_ptr<const PreparedGeometry>> _prepared{CAPACITY};
+    core::RecencyCache<Key, osg::ref_ptr<osg::Geometry>> _outlines{CAPACITY};
 };
 
 } // namespace render

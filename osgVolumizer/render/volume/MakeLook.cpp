@@ -111,6 +111,9 @@ void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& pre
     features.opaqueDepth = features.slab;
     features.rayFunction = usedRayFunction(appearance, prepared, reasons);
     features.shading = usesShading(appearance, prepared, features.rayFunction, reasons);
+    explainSampling(appearance, prepared, reasons);
+    if (voxels && appearance.getCombineRule() != VolumeAppearance::PAINT)
+        explainLookup(appearance, prepared, reasons);
     features.gradientTexture = features.shading && !features.rgba &&
                                appearance.getGradients() == VolumeAppearance::PRECOMPUTED;
 }

@@ -21,11 +21,18 @@ std::string whyNoSlabs(const VolumeAppearance& appearance, const PreparedGeometr
     if (!prepared.voxelFrame) return "no one affine map leads to the voxel frame";
     if (!prepared.region) return "the region is not convex";
     if (prepared.tetras.vertices.format().colorSize != 0) return "vertices have colours";
-    if (appearance.getTechnique() == VolumeAppearance::AUTOMATIC &&
-        appearance.getSamplingMode() != SamplingMode::VIEWPORT_ALIGNED)
+    const bool automatic = appearance.getTechnique() == VolumeAppearance::AUTOMATIC;
+    if (automatic && appearance.getSamplingMode() != SamplingMode::VIEWPORT_ALIGNED)
         return "sampling surfaces other than VIEWPORT_ALIGNED are asked for";
+    if (automatic && appearance.getSamplingSpace() != SamplingSpace::OBJECT)
+        return "a sampling space other than OBJECT is asked for";
     return {};
 }
+
+// Another lookup than what is asked for is in force.
+const char* const WHY_ANOTHER_LOOKUP =
+    "another lookup needs composited voxels of one component in one voxel frame, interpolated "
+    "linearly or better; lookup is after interpolation";
 
 void explainTechnique(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
                       VolumeAppearance::Settings& settings)
@@ -56,9 +63,7 @@ void explainLookup(const VolumeAppearance& appearance, const PreparedGeometry& p
              usedLookup(appearance, prepared) == asked)
         settings.reasons.push_back("the table is smooth; lookup is after interpolation");
     else
-        settings.reasons.push_back("another lookup needs composited voxels of one component in one "
-                                   "voxel frame, interpolated linearly or better; lookup is after "
-                                   "interpolation");
+        settings.reasons.push_back(WHY_ANOTHER_LOOKUP);
 }
 
 // A volume that paints is sampled by the shaders of those it paints.
@@ -123,7 +128,10 @@ bool usesShading(const VolumeAppearance& appearance, const PreparedGeometry& pre
 {
     const Voxels* voxels = appearance.getVoxels();
     if (!appearance.getShading() || !voxels) return false;
-    if (rowOf(function).gathers) return false; // values have no colour yet
+    if (rowOf(function).gathers) { // values have no colour yet
+        reasons.push_back("what the ray function gathers is not lit");
+        return false;
+    }
     if (!prepared.voxelFrame) {
         reasons.push_back("shading needs one affine map to the voxel frame; the deformed "
                           "volume is not lit");
@@ -135,6 +143,24 @@ bool usesShading(const VolumeAppearance& appearance, const PreparedGeometry& pre
                           " samples, but the voxels' overlap is " +
                           std::to_string(voxels->getOverlap()));
     return true;
+}
+
+void explainSampling(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                     Reasons& reasons)
+{
+    if (usesSlabs(appearance, prepared) &&
+        (appearance.getSamplingMode() != SamplingMode::VIEWPORT_ALIGNED ||
+         appearance.getSamplingSpace() != SamplingSpace::OBJECT))
+        reasons.push_back("sampling mode and space are those of slices, but the technique is "
+                          "slabs; each ray is sampled along itself");
+}
+
+void explainLookup(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                   Reasons& reasons)
+{
+    if (appearance.getLookup() != VolumeAppearance::AUTOMATIC_LOOKUP &&
+        usedLookup(appearance, prepared) != appearance.getLookup())
+        reasons.push_back(WHY_ANOTHER_LOOKUP);
 }
 
 VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
@@ -186,6 +212,7 @@ VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
     settings.interpolation = usedInterpolation(appearance, reasons);
     settings.rayFunction = usedRayFunction(appearance, prepared, reasons);
     settings.shading = usesShading(appearance, prepared, settings.rayFunction, reasons);
+    explainSampling(appearance, prepared, reasons);
     if (!appearance.getVoxels()) return settings;
     explainLookup(appearance, prepared, integrals, settings);
     if (appearance.getErrorTolerance() > 0.0) (void)canKeepTolerance(appearance, prepared, reasons);

@@ -24,6 +24,12 @@ VolumeAppearance::RayFunction usedRayFunction(const VolumeAppearance& appearance
                                               const PreparedGeometry& prepared, Reasons& reasons);
 bool usesShading(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
                  VolumeAppearance::RayFunction function, Reasons& reasons);
+/// Of sampling mode and space, where slabs make nothing of them.
+void explainSampling(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                     Reasons& reasons);
+/// Of a lookup that is asked for, where another one is in force. Expects voxels.
+void explainLookup(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                   Reasons& reasons);
 /// When the table can be applied, of what the appearance asks for: AUTOMATIC_LOOKUP where the table
 /// is to decide. Expects voxels.
 VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
