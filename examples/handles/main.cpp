@@ -26,8 +26,10 @@
 #include <osgManipulator/Dragger>
 #include <osgViewer/Viewer>
 
+#include <algorithm>
 #include <cstdio>
-#include <cstring>
+#include <iterator>
+#include <string>
 
 using namespace osgVolumizer;
 
@@ -178,6 +180,11 @@ int main(int argc, char** argv)
         std::fprintf(stderr, "osgvolumizerhandles: %s\n",
                      read.ok() ? "there is no volume" : read.status.text.c_str());
         return 1;
+    }
+    if (argc == 4 &&
+        std::find(std::begin(TOOLS), std::end(TOOLS), std::string(argv[2])) == std::end(TOOLS)) {
+        std::fprintf(stderr, "osgvolumizerhandles: there is no tool '%s'\n", argv[2]);
+        return 2;
     }
     osg::ref_ptr<Keys> keys = new Keys(*find.geometry, *find.appearance);
     keys->choose(argc == 4 ? argv[2] : TOOLS[0]);
