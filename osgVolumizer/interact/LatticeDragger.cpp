@@ -48,6 +48,7 @@ LatticeDragger::LatticeDragger(LatticeDeformer* lattice)
         addDragger(handleShapes::makePointDragger());
     osg::ref_ptr<osg::MatrixTransform> about =
         new osg::MatrixTransform(osg::Matrixd::translate(lattice->getRestPoint(0)));
+    about->setDataVariance(osg::Object::DYNAMIC); // not to be flattened into the lines
     about->addChild(_lines);
     addChild(about);
     LatticeDragger::place();

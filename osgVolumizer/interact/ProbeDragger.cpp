@@ -17,6 +17,7 @@ ProbeDragger::ProbeDragger(const VolumeGeometry* geometry, const VolumeAppearanc
       _end(end), _line(handleShapes::makeLines()), _linePlace(new osg::MatrixTransform)
 {
     makeHandles();
+    _linePlace->setDataVariance(osg::Object::DYNAMIC); // not to be flattened into the line
     _linePlace->addChild(_line);
     addChild(_linePlace);
     ProbeDragger::place();

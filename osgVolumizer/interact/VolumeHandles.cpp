@@ -57,9 +57,6 @@ VolumeHandles::VolumeHandles() : _private(new Private)
 {
     setNumChildrenRequiringUpdateTraversal(1);
     setNumChildrenRequiringEventTraversal(1);
-    // What hides behind an application's other surfaces is still drawn, on top; what moves with the
-    // mouse is no scene to be flattened.
-    setDataVariance(osg::Object::DYNAMIC);
 }
 
 VolumeHandles::~VolumeHandles()

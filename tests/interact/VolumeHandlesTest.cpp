@@ -10,6 +10,7 @@
 #include <osg/MatrixTransform>
 #include <osgDB/ReadFile>
 #include <osgDB/WriteFile>
+#include <osgUtil/Optimizer>
 
 #include <support/GLTest.h>
 #include <support/Reports.h>
@@ -330,6 +331,32 @@ TEST(VolumeHandles, AreLeftOutOfFiles)
         ASSERT_EQ(read->asGroup()->getNumChildren(), 1u) << extension;
         EXPECT_TRUE(read->asGroup()->getChild(0)->asTransform());
     }
+}
+
+TEST(VolumeHandles, AreLeftAloneByTheOptimizer)
+{
+    const osg::ref_ptr<VolumeCut> cut = new VolumeCut;
+    ASSERT_TRUE(cut->addRegion(CutRegion::sphere(MIDDLE, 8.0)));
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    const auto handles = CutDragger::create(cut, 0, {0, 0, 0, 24, 24, 24});
+    root->addChild(*handles);
+    const osg::ref_ptr<VolumeAppearance> volume = dense(0.5);
+    osg::ref_ptr<ProbeDragger> line = new ProbeDragger(
+        &geometryBelow(*volume), volume, osg::Vec3d(-9, 3, 3), osg::Vec3d(-9, 9, 9), 0.5);
+    root->addChild(line);
+    const osg::BoundingSphere bound = line->getBound();
+    osgUtil::Optimizer().optimize(root, osgUtil::Optimizer::ALL_OPTIMIZATIONS);
+    osgViewer::Viewer viewer;
+    lookWithoutWindow(viewer, root, front());
+    // The line is still where it was, and follows.
+    ASSERT_TRUE(line->setSegment({-9, 3, 6}, {-9, 9, 12}));
+    line->follow();
+    EXPECT_LT((line->getBound().center() - bound.center() - osg::Vec3(0, 0, 3)).length(), 1e-3f);
+    // The boxes on the x and z axes.
+    EXPECT_TRUE(Pointer(viewer).dragFromTo({20, 12, 12}, {22, 12, 12}));
+    EXPECT_NEAR(cut->getRegion(0).getRadius(), 10.0, 0.1);
+    EXPECT_TRUE(Pointer(viewer).dragFromTo({12, 12, 22}, {12, 12, 20}));
+    EXPECT_NEAR(cut->getRegion(0).getRadius(), 8.0, 0.1);
 }
 
 // An application may keep a dragger longer than its group.

@@ -117,15 +117,16 @@ bool HandlePointer::press(VolumeHandles& owner, const osgGA::GUIEventAdapter& ev
 bool HandlePointer::handle(VolumeHandles& owner, const osgGA::GUIEventAdapter& event,
                            osgViewer::View& view)
 {
-    using Event = osgGA::GUIEventAdapter;
-    if (event.getEventType() == Event::PUSH && !event.getHandled())
+    const auto type = event.getEventType();
+    if (type == osgGA::GUIEventAdapter::PUSH && !event.getHandled())
         return press(owner, event, view);
-    if (!_active || (event.getEventType() != Event::DRAG && event.getEventType() != Event::RELEASE))
+    if (!_active ||
+        (type != osgGA::GUIEventAdapter::DRAG && type != osgGA::GUIEventAdapter::RELEASE))
         return false;
     const CameraPixel pixel = pixelOf(event, view);
     if (pixel.camera) _pointer.setMousePosition(pixel.x, pixel.y);
     _active->handle(_pointer, event, view);
-    if (event.getEventType() == Event::RELEASE) _active = nullptr;
+    if (type == osgGA::GUIEventAdapter::RELEASE) _active = nullptr;
     return true;
 }
 
