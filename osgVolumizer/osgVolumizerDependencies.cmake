@@ -3,7 +3,7 @@
 # FindOpenSceneGraph gives variables with absolute paths, which must not be written into an
 # exported target.
 macro(osgvolumizer_find_openscenegraph)
-  find_package(OpenSceneGraph 3.6 ${ARGN} COMPONENTS osgDB osgGA osgUtil osgViewer osgText osgSim)
+  find_package(OpenSceneGraph 3.6 ${ARGN} COMPONENTS osgDB osgGA osgManipulator osgUtil osgViewer osgText osgSim)
   if(OPENSCENEGRAPH_FOUND AND NOT TARGET osgVolumizer::OpenSceneGraph)
     add_library(osgVolumizer::OpenSceneGraph INTERFACE IMPORTED)
     set_target_properties(osgVolumizer::OpenSceneGraph PROPERTIES
