@@ -76,6 +76,14 @@ FloatImage withCoarseFilters(A& a)
         &a, support::limited(view(), [](render::ContextLimits& limits) { limits.filterBits = 4; }));
 }
 
+// Floats are accumulated where they are.
+FloatImage inBytes(A& a)
+{
+    RenderOptions options = view();
+    options.format = support::PictureTarget::BYTE;
+    return support::renderScene(&a, options);
+}
+
 FloatImage overAnother(A& a)
 {
     osg::ref_ptr<osg::Group> group = new osg::Group;
@@ -142,7 +150,8 @@ const std::map<std::string, Case>& cases()
                          lit)},
         {"Gradients", change([](A& a) { a.setGradients(A::PRECOMPUTED); }, lit)},
         {"AccumulationBits",
-         change([](A& a) { a.setAccumulationBits(8); }, [](A& a) { a.setTechnique(A::SLICES); })},
+         {[](A& a) { a.setTechnique(A::SLICES); }, [](A& a) { a.setAccumulationBits(8); },
+          inBytes}},
         {"CombineRule", {[](A&) {}, [](A& a) { a.setCombineRule(A::PAINT); }, overAnother}},
         {"ErrorTolerance", change([](A& a) { a.setErrorTolerance(0.05); })},
         {"TargetFrameTime", {moving, [](A& a) { a.setTargetFrameTime(1e-9); }, inMotion}},
