@@ -165,6 +165,14 @@ bool addExactly(const CutRegion& region, bool anyPlanes, core::Cut& cut)
 VolumeCut::VolumeCut(const VolumeCut& o, const osg::CopyOp& op)
     : osg::Object(o, op), _regions(o._regions), _softness(o._softness), _resolution(o._resolution)
 {
+    for (CutRegion& region : _regions) {
+        if (!region.getMask() || !(op.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)) continue;
+        const osg::ref_ptr<osg::Object> mask =
+            op(static_cast<const osg::Object*>(region.getMask()));
+        const CutRegion copied = CutRegion::mask(dynamic_cast<Voxels*>(mask.get()),
+                                                 region.getMaskLow(), region.getMaskHigh());
+        region = region.isComplement() ? copied.complement() : copied;
+    }
 }
 
 ReportedStatus VolumeCut::addRegion(const CutRegion& region)

@@ -29,6 +29,7 @@ public:
     META_Object(osgVolumizer, VolumeCut);
 
     VolumeCut() = default;
+    /// Shares masks with `o`; has its own with CopyOp::DEEP_COPY_OBJECTS.
     VolumeCut(const VolumeCut& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY);
 
     /// Adds a region, or puts it in the place of another. Refused as by CutRegion::validate(), and
@@ -46,7 +47,8 @@ public:
     ReportedStatus setSoftness(double objectUnits);
     double getSoftness() const { return _softness; }
     /// Samples of the grid along the longest axis of the voxels, from 8 to 512; 0 (default): 128,
-    /// or as many as a mask has, up to 256. Four bytes each, in memory and on the card.
+    /// or as many as a mask has, up to 256. Four bytes each, in memory and on the card. It is made
+    /// in the first frame after a change, some 0.1 s for 128^3.
     ReportedStatus setResolution(int samples);
     int getResolution() const { return _resolution; }
     /// The values of a mask have changed.

@@ -1,9 +1,11 @@
 // The README's sample of picking: as it stands there, and that it does what it says.
 #include "PickOracle.h"
 
+#include <osgVolumizer/VolumeCut.h>
 #include <osgVolumizer/VolumeSlice.h>
 #include <osgVolumizer/interact/Probe.h>
 
+#include <osg/ShapeDrawable>
 #include <osgViewer/Viewer>
 
 #include <fstream>
@@ -38,6 +40,17 @@ slice->setThickness(5.0);       // the largest value within 2.5 units on each si
 slice->setReduction(osgVolumizer::VolumeSlice::MAXIMUM);
 appearance->addChild(slice);
 } // end of slices
+
+void cutAway(osgVolumizer::VolumeAppearance* volume, osg::Drawable* mesh, osgVolumizer::Voxels* labels)
+{
+osg::ref_ptr<osgVolumizer::VolumeCut> cut = new osgVolumizer::VolumeCut;
+cut->addRegion(osgVolumizer::CutRegion::sphere({64, 64, 40}, 50.0));                    // within
+cut->addRegion(osgVolumizer::CutRegion::box({64, 0, 0, 128, 64, 128}).complement());    // but for a corner
+cut->addRegion(osgVolumizer::CutRegion::surface(*mesh).complement());                   // and an implant
+cut->addRegion(osgVolumizer::CutRegion::mask(labels, 3, 5));                            // of these labels
+cut->setSoftness(2.0);                                                                  // fading over 2 units
+volume->setCut(cut);
+} // end of cutting
 // clang-format on
 
 std::string textOf(const std::string& file)
@@ -69,6 +82,21 @@ TEST(ReadmeSample, OfSlicesIsThisOne)
     ASSERT_TRUE(slice);
     EXPECT_EQ(slice->getPlane(), osg::Vec4d(0, 0, 1, -3));
     EXPECT_NEAR(slice->getBoundingBox().xMax(), 7.0, 1e-5);
+}
+
+TEST(ReadmeSample, Cuts)
+{
+    const std::string own = textOf("tests/interact/ReadmeSampleTest.cpp");
+    const std::size_t begin = own.find("osg::ref_ptr<osgVolumizer::VolumeCut> cut"),
+                      end = own.find("} // end of cutting");
+    ASSERT_LT(begin, end);
+    EXPECT_NE(textOf("README.md").find(own.substr(begin, end - begin)), std::string::npos);
+    const osg::ref_ptr<osgVolumizer::VolumeAppearance> volume =
+        makeVolume(makeBlob(glm::ivec3(8), 2.0));
+    const osg::ref_ptr<osg::Drawable> mesh =
+        new osg::ShapeDrawable(new osg::Sphere({64, 64, 64}, 5.0f));
+    cutAway(volume, mesh, volume->getVoxels());
+    EXPECT_EQ(volume->getCut()->getNumRegions(), 4u);
 }
 
 TEST(ReadmeSample, ListsVoxels)

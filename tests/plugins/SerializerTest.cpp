@@ -122,6 +122,7 @@ TEST_P(SerializerTest, SlicesKeepAllThatIsSet)
     slice.setInterpolation(VolumeAppearance::CUBIC);
     slice.setExactFiltering(true);
     slice.setUsesTableOpacity(true);
+    slice.setFollowsCut(true);
     slice.setRegion(VolumeGeometry::createBox(osg::BoundingBoxd(1, 2, 3, 4, 5, 6)));
     osg::ref_ptr<VolumeSlice> copy = roundTrip(slice);
     ASSERT_TRUE(copy.valid()) << errors();
@@ -135,6 +136,7 @@ TEST_P(SerializerTest, SlicesKeepAllThatIsSet)
     EXPECT_EQ(copy->getReduction(), VolumeSlice::MINIMUM);
     EXPECT_EQ(copy->getInterpolation(), VolumeAppearance::CUBIC);
     EXPECT_TRUE(copy->getExactFiltering() && copy->getUsesTableOpacity());
+    EXPECT_TRUE(copy->getFollowsCut());
     ASSERT_TRUE(copy->getRegion());
     EXPECT_EQ(copy->getRegion()->getTetraSet()->tetraCount(), 5u);
 

@@ -148,9 +148,11 @@ void drawMembersApart(const FusedDrawing& drawing, const BrickBatch& triangles)
         uniforms.set("frameToClip", inDevice);
         setSamplers(uniforms);
         if (!setMember(drawing, member, uniforms, UNIT_TABLE, UNIT_FIRST_PAINT)) continue;
-        if (member.part->features.cutField &&
-            !applyCutField(state, member.part->look->cut, UNIT_CUT))
-            continue;
+        if (member.part->features.cutField) {
+            const unsigned unit = cutUnitOf(member.part->features);
+            if (!applyCutField(state, member.part->look->cut, unit)) continue;
+            uniforms.set("cutField", static_cast<int>(unit));
+        }
         const core::View view{member.frameToEye, drawing.projection};
         BrickBatch batch = member.batch;
         batch.firstIndex = triangles.firstIndex;

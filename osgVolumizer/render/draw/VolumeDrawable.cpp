@@ -173,7 +173,11 @@ void VolumeDrawable::drawMarched(osg::RenderInfo& renderInfo,
     setSamplers(uniforms);
     setUniforms(state, uniforms, *_part, rays, view.toEye, resources->part<AccumulationBuffers>());
     if (look.table.texture && !applyTable(state, look.table.texture.get(), UNIT_TABLE)) return;
-    if (_part->features.cutField && !applyCutField(state, look.cut, UNIT_CUT)) return;
+    if (_part->features.cutField) {
+        const unsigned unit = cutUnitOf(_part->features);
+        if (!applyCutField(state, look.cut, unit)) return;
+        uniforms.set("cutField", static_cast<int>(unit));
+    }
     if (_part->paints)
         setPaints(renderInfo, resources->limits, uniforms, *_part->paints, UNIT_FIRST_PAINT);
     BatchDrawing drawing{renderInfo, resources->limits, uniforms, _part->features, view};

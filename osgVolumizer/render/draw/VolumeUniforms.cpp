@@ -118,6 +118,11 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
 
 } // namespace
 
+unsigned cutUnitOf(const ProgramFeatures& features)
+{
+    return UNIT_FIRST_PAINT + 2 * static_cast<unsigned>(features.paintCount);
+}
+
 void setSamplers(const Uniforms& uniforms)
 {
     static constexpr std::pair<const char*, unsigned> UNITS[] = {{"voxels", UNIT_VOXELS},
@@ -129,8 +134,7 @@ void setSamplers(const Uniforms& uniforms)
                                                                  {"sortedFar", UNIT_SORTED_FAR},
                                                                  {"sortedNear", UNIT_SORTED_NEAR},
                                                                  {"cells", UNIT_CELLS},
-                                                                 {"nextVoxels", UNIT_NEXT_VOXELS},
-                                                                 {"cutField", UNIT_CUT}};
+                                                                 {"nextVoxels", UNIT_NEXT_VOXELS}};
     for (const auto& unit : UNITS)
         uniforms.set(unit.first, static_cast<int>(unit.second));
 }

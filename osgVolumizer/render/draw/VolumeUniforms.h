@@ -10,6 +10,9 @@
 namespace osgVolumizer {
 namespace render {
 
+/// The texture unit of a cut's grid: after those of paints.
+unsigned cutUnitOf(const ProgramFeatures& features);
+
 /// Tells the program in force which texture units its samplers are.
 void setSamplers(const Uniforms& uniforms);
 
