@@ -34,7 +34,7 @@ public:
         MASK
     };
 
-    /// All of space.
+    /// All that voxels can fill: within 1e18.
     CutRegion() = default;
     /// Where x, y, z, w times (point, 1) >= 0.
     static CutRegion halfSpace(const osg::Vec4d& plane);
@@ -77,7 +77,7 @@ private:
 
     Kind _kind = HALF_SPACE;
     bool _complement = false;
-    osg::Vec4d _plane{0.0, 0.0, 1.0, std::numeric_limits<double>::max()};
+    osg::Vec4d _plane{0.0, 0.0, 1.0, 1e18};
     osg::BoundingBoxd _box;
     osg::Vec3d _center;
     double _radius = 0.0;

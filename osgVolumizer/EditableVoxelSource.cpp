@@ -278,7 +278,9 @@ EditableVoxelSource::Edit EditableVoxelSource::endEdit(std::vector<core::Box3i> 
     edit._boxes = std::move(boxes);
     const std::unique_lock<std::shared_mutex> lock(_mutex);
     for (const auto& before : _before) {
-        const BlockPtr& after = _blocks[before.first];
+        const auto found = _blocks.find(before.first);
+        if (found == _blocks.end()) continue; // another's undo has taken it back
+        const BlockPtr& after = found->second;
         edit._changes.push_back({before.first.level, before.first.block, before.second, after});
         edit._bytes += before.second->samples.size() + after->samples.size();
     }

@@ -135,8 +135,9 @@ bool addExactly(const CutRegion& region, bool anyPlanes, core::Cut& cut)
     const bool soft = cut.softness > 0.0;
     const auto addPlanes = [&](const std::vector<core::Plane>& planes) {
         if (planes.empty()) return false;
-        if ((soft || !anyPlanes) && cut.planes.size() + planes.size() > VolumeCut::MOST_SHAPES)
-            return false;
+        const std::size_t most =
+            soft || !anyPlanes ? VolumeCut::MOST_SHAPES : VolumeCut::MOST_PLANES;
+        if (cut.planes.size() + planes.size() > most) return false;
         cut.planes.insert(cut.planes.end(), planes.begin(), planes.end());
         return true;
     };
@@ -252,9 +253,10 @@ glm::ivec3 VolumeCut::samplesFor(const core::Box3d& box) const
 
 std::shared_ptr<const core::Cut> VolumeCut::make(core::Box3d box, bool anyPlanes) const
 {
-    // A grid needs some thickness.
-    const glm::dvec3 size = box.size();
-    const double least = 1e-3 * std::max({size.x, size.y, size.z});
+    // A grid needs some thickness, which has to tell its ends apart.
+    const glm::dvec3 size = box.size(), farthest = glm::max(glm::abs(box.min), glm::abs(box.max));
+    const double least = std::max({1e-3 * std::max({size.x, size.y, size.z}),
+                                   1e-9 * std::max({farthest.x, farthest.y, farthest.z}), 1e-18});
     const glm::dvec3 missing = 0.5 * glm::max(least - size, 0.0);
     box = {box.min - missing, box.max + missing};
     auto cut = std::make_shared<core::Cut>();
@@ -278,17 +280,16 @@ std::shared_ptr<const core::Cut> VolumeCut::make(core::Box3d box, bool anyPlanes
 
 std::shared_ptr<const core::Cut> VolumeCut::cutOf(const core::Box3d& box, bool anyPlanes) const
 {
-    constexpr std::size_t MOST_MADE = 4;
+    if (!anyPlanes) { // mostly the same will do
+        const CutPtr general = cutOf(box, true);
+        if (!general || general->planes.size() <= MOST_SHAPES) return general;
+    }
     const unsigned count = _modifiedCount;
     std::lock_guard<std::mutex> lock(_mutex);
-    _made.erase(std::remove_if(_made.begin(), _made.end(),
-                               [count](const Made& made) { return made.modifiedCount != count; }),
-                _made.end());
-    for (const Made& made : _made)
-        if (made.box == box && made.anyPlanes == anyPlanes) return made.cut;
-    if (_made.size() == MOST_MADE) _made.erase(_made.begin());
-    _made.push_back({box, anyPlanes, count, make(box, anyPlanes)});
-    return _made.back().cut;
+    _made.removeIf([count](const auto& made) { return made.key.modifiedCount != count; });
+    const Key key{box, anyPlanes, count};
+    if (const CutPtr* known = _made.find(key)) return *known;
+    return _made.add(key, make(box, anyPlanes));
 }
 
 } // namespace osgVolumizer

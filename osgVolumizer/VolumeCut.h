@@ -2,6 +2,7 @@
 
 #include "CutRegion.h"
 #include "RenderData.h"
+#include "core/RecencyCache.h"
 #include "core/cutting/Cut.h"
 
 #include <osg/Object>
@@ -20,9 +21,11 @@ namespace osgVolumizer {
 /// Appearances may share one.
 ///
 /// Half-spaces, boxes, and surfaces that are convex and have no more than 32 faces cut exactly, as
-/// osg::ClipPlanes do; so do spheres and what lies outside of boxes, to second order in the
-/// sampling period. Other surfaces and masks are met to second order in the distance of samples of
-/// a grid (see setResolution()), which rounds edges by about that. To be changed between frames.
+/// osg::ClipPlanes do, 64 planes in all; so do spheres and what lies outside of boxes, eight in
+/// all, to second order in the sampling period. All others, surfaces and masks are met to second
+/// order in the distance of samples of a grid (see setResolution()), which rounds edges by about
+/// that. Of soft cuts, deformed volumes, and slices that follow a cut, eight planes are exact. To
+/// be changed between frames.
 class OSGVOLUMIZER_EXPORT VolumeCut : public osg::Object
 {
 public:
@@ -70,8 +73,9 @@ public:
         _renderData.releaseGLObjects(state);
     }
 
-    /// Planes and shapes of a core::Cut, each, that are not put into its grid.
-    static constexpr std::size_t MOST_SHAPES = 8;
+    /// Shapes of a core::Cut, and planes where there may not be any number, that are not put into
+    /// its grid; and planes in any case.
+    static constexpr std::size_t MOST_SHAPES = 8, MOST_PLANES = 64;
     /// Faces of a convex surface that is cut by planes.
     static constexpr std::size_t MOST_FACES = 32;
 
@@ -80,13 +84,17 @@ protected:
 
 private:
     friend struct RenderDataAccess;
-    struct Made
+    struct Key
     {
         core::Box3d box;
         bool anyPlanes;
         unsigned modifiedCount;
-        std::shared_ptr<const core::Cut> cut;
+        bool operator==(const Key& o) const
+        {
+            return box == o.box && anyPlanes == o.anyPlanes && modifiedCount == o.modifiedCount;
+        }
     };
+    using CutPtr = std::shared_ptr<const core::Cut>;
     std::shared_ptr<const core::Cut> make(core::Box3d box, bool anyPlanes) const;
     glm::ivec3 samplesFor(const core::Box3d& box) const;
 
@@ -94,8 +102,8 @@ private:
     double _softness = 0.0;
     int _resolution = 0;
     std::atomic<unsigned> _modifiedCount{0};
-    mutable std::mutex _mutex;          // of the next
-    mutable std::vector<Made> _made;    // for the last few boxes
+    mutable std::mutex _mutex; // of the next
+    mutable core::RecencyCache<Key, CutPtr> _made{32};
     mutable RenderDataSlot _renderData; // the grid's texture
 };
 

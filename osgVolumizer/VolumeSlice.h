@@ -31,7 +31,8 @@ struct SliceAccess;
 /// it; of paged voxels (see Voxels::isPaged()) it is coarse until finer ones are there.
 ///
 /// A Drawable and no osg::Geometry, so that OSG's Optimizer keeps transforms above it. To be
-/// changed between frames. Whoever changes the voxels' size or place calls dirtyBound().
+/// changed between frames. Whoever changes the voxels' size or place, or the region, calls
+/// dirtyBound().
 class OSGVOLUMIZER_EXPORT VolumeSlice : public osg::Drawable
 {
 public:
@@ -134,8 +135,8 @@ public:
     double getSamplingPeriod() const { return _samplingPeriod; }
 
     /// On: only what the appearance's cut leaves is shown (see VolumeAppearance::setCut()), its own
-    /// surfaces included: places less than half a sample, or a cell of its grid, outside. Off by
-    /// default.
+    /// surfaces included: places less than half a sample, or a cell of its grid, outside. Bricks
+    /// are read, and intersectors find the slice, all the same. Off by default.
     void setFollowsCut(bool follows) { _followsCut = follows; }
     bool getFollowsCut() const { return _followsCut; }
 

@@ -47,7 +47,8 @@ public:
     VoxelSource* getSource() const { return _source.get(); }
     /// Another source of the very same values in place of the present one: nothing is forgotten,
     /// neither range, spacing and origin nor what is resident. Refuses (SIZE_MISMATCH) one of
-    /// another size, type, or number of components, levels, steps, or samples of a page.
+    /// another size, type, or number of components, levels, steps, or samples of a page. Of paged
+    /// voxels reads may be under way: the new source is to keep the old one, or not to be read.
     ReportedStatus exchangeSource(VoxelSource* source);
     /// False until a source with voxels is set: such voxels draw nothing.
     bool valid() const;

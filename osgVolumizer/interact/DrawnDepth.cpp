@@ -9,7 +9,7 @@ namespace osgVolumizer {
 osg::ref_ptr<DrawnDepth> DrawnDepth::install(osg::Camera& camera)
 {
     osg::ref_ptr<DrawnDepth> made = new DrawnDepth;
-    camera.addFinalDrawCallback(made);
+    camera.addPostDrawCallback(made);
     return made;
 }
 
@@ -33,7 +33,9 @@ void DrawnDepth::operator()(osg::RenderInfo& renderInfo) const
     std::lock_guard<std::mutex> lock(_mutex);
     if (!_asked) return;
     _asked = false;
-    _depth = render::readDepth(*renderInfo.getState(), _x, _y);
+    const osg::Camera* camera = renderInfo.getCurrentCamera();
+    if (camera && camera->getViewport())
+        _depth = render::readDepth(*renderInfo.getState(), *camera->getViewport(), _x, _y);
 }
 
 } // namespace osgVolumizer

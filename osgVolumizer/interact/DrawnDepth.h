@@ -17,7 +17,7 @@ namespace osgVolumizer {
 class OSGVOLUMIZER_EXPORT DrawnDepth : public osg::Camera::DrawCallback
 {
 public:
-    /// Adds one to the final draw callbacks of a camera.
+    /// Adds one to the post-draw callbacks of a camera: before cameras that draw after it.
     static osg::ref_ptr<DrawnDepth> install(osg::Camera& camera);
 
     /// Asks for the depth under a pixel, as in zpick(): it is there once the next frame is drawn.

@@ -219,9 +219,18 @@ Result<std::int64_t> Sculptor::stroke(const std::vector<osg::Vec3d>& points)
     return dabs;
 }
 
+// What was done to a source that the voxels have no longer cannot be undone.
+void Sculptor::forgetAnotherSource()
+{
+    if (_voxels && _source && _voxels->getSource() == _source.get()) return;
+    _undo.clear();
+    _redo.clear();
+}
+
 Status Sculptor::undo()
 {
     endStroke();
+    forgetAnotherSource();
     if (_undo.empty()) return {ErrorCode::VALUE_INVALID, "there is no stroke to undo"};
     const Edit edit = std::move(_undo.back());
     _undo.pop_back();
@@ -234,6 +243,7 @@ Status Sculptor::undo()
 Status Sculptor::redo()
 {
     endStroke();
+    forgetAnotherSource();
     if (_redo.empty()) return {ErrorCode::VALUE_INVALID, "there is no stroke to do again"};
     const Edit edit = std::move(_redo.back());
     _redo.pop_back();

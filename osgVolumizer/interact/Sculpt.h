@@ -105,6 +105,7 @@ private:
     };
 
     Status prepare();
+    void forgetAnotherSource();
     Result<std::int64_t> begin(const std::vector<osg::Vec3d>& points);
     core::SculptTool toolVoxel() const;
     glm::dvec3 toVoxel(const osg::Vec3d& point) const;

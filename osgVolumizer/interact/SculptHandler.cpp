@@ -32,6 +32,11 @@ std::optional<osg::Vec3d> SculptHandler::pointUnder(const Event& event,
     return pick.point * osg::computeWorldToLocal(pick.nodePath);
 }
 
+bool SculptHandler::isHeld(const Event& event)
+{
+    return (event.getButtonMask() & Event::LEFT_MOUSE_BUTTON) != 0;
+}
+
 bool SculptHandler::handleKey(const Event& event)
 {
     const int key = event.getUnmodifiedKey();
@@ -45,6 +50,11 @@ bool SculptHandler::handleKey(const Event& event)
 bool SculptHandler::handle(const Event& event, osgGA::GUIActionAdapter& actions)
 {
     const auto type = event.getEventType();
+    if (_drawing && (type == Event::RELEASE || (type == Event::DRAG && !isHeld(event)))) {
+        _sculptor.endStroke();
+        _drawing = false;
+        return type == Event::RELEASE;
+    }
     if (event.getHandled() || !_sculptor.getVoxels()) return false;
     if (type == Event::KEYDOWN) {
         if (!handleKey(event)) return false;
@@ -62,10 +72,7 @@ bool SculptHandler::handle(const Event& event, osgGA::GUIActionAdapter& actions)
         actions.requestRedraw();
         return true;
     }
-    if (!_drawing || type != Event::RELEASE) return false;
-    _sculptor.endStroke();
-    _drawing = false;
-    return true;
+    return false;
 }
 
 } // namespace osgVolumizer

@@ -144,6 +144,18 @@ void VolumeHandles::finished()
     _private->dragged = _private->changed = false;
 }
 
+void VolumeHandles::resizeGLObjectBuffers(unsigned int maximum)
+{
+    osg::Group::resizeGLObjectBuffers(maximum);
+    _private->look.resizeGLObjectBuffers(maximum);
+}
+
+void VolumeHandles::releaseGLObjects(osg::State* state) const
+{
+    osg::Group::releaseGLObjects(state);
+    _private->look.releaseGLObjects(state);
+}
+
 void VolumeHandles::traverse(osg::NodeVisitor& visitor)
 {
     if (osgGA::EventVisitor* events = visitor.asEventVisitor()) {

@@ -21,8 +21,9 @@ namespace osgVolumizer {
 /// says otherwise; it follows what it moves, whoever moves that.
 ///
 /// Handles are drawn as opaque surfaces, which volumes hide where they are opaque, and once more,
-/// faintly, on top of everything; neither lights nor clip planes change them. They are found under
-/// the pointer through whatever is in front; of several, whichever group they are in, the nearest.
+/// faintly, on top of everything (contexts of the compatibility profile); neither lights nor clip
+/// planes change them. They are found under the pointer through whatever is in front; of several,
+/// whichever group they are in, the nearest.
 ///
 /// Things change in the event traversal and follow in the update traversal, so between frames, in
 /// every threading model of OSG's viewers. What is refused is reported, and the handle goes back.
@@ -50,6 +51,8 @@ public:
     void follow();
 
     void traverse(osg::NodeVisitor& visitor) override;
+    void resizeGLObjectBuffers(unsigned int maximum) override;
+    void releaseGLObjects(osg::State* state = nullptr) const override;
     const char* libraryName() const override { return "osgVolumizer"; }
     const char* className() const override { return "VolumeHandles"; }
 

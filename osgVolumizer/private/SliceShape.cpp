@@ -153,7 +153,11 @@ Result<SliceShape> polygonShape(const std::vector<glm::dvec3>& polygon)
 Result<SliceShape> triangleShape(const osg::Geometry* geometry, int placeUnit)
 {
     using namespace SliceShapes;
+    constexpr int MOST_UNITS = 32;
     if (!geometry) return invalid("there is no geometry");
+    if (placeUnit >= MOST_UNITS)
+        return invalid("unit " + std::to_string(placeUnit) + " of places is not below " +
+                       std::to_string(MOST_UNITS));
     SliceShape shape;
     shape.kind = SliceShape::TRIANGLES;
     shape.ownPlaces = placeUnit >= 0;

@@ -109,10 +109,13 @@ Status applyRegions(Record& record, const osgDB::Options*, VolumeCut& cut)
     if (status.ok()) status = record.getInteger("RegionCount", 0, 1 << 16, count);
     if (status.ok()) status = cut.setSoftness(softness[0]);
     if (status.ok()) status = cut.setResolution(resolution);
-    for (int i = 0; i < count && status.ok(); ++i) {
+    if (!status.ok()) return status;
+    // Each by itself: one that is damaged is left out, and the first one is reported.
+    for (int i = 0; i < count; ++i) {
         CutRegion region;
-        status = readRegion(record, static_cast<unsigned>(i), region);
-        if (status.ok()) status = cut.addRegion(region);
+        Status read = readRegion(record, static_cast<unsigned>(i), region);
+        if (read.ok()) read = cut.addRegion(region);
+        if (status.ok()) status = read;
     }
     return status;
 }

@@ -76,6 +76,18 @@ void HandleLook::setThroughOpacity(double opacity)
     _opacity->set(static_cast<float>(opacity));
 }
 
+void HandleLook::resizeGLObjectBuffers(unsigned int maximum)
+{
+    for (const auto& state : {_solid, _through})
+        state->resizeGLObjectBuffers(maximum);
+}
+
+void HandleLook::releaseGLObjects(osg::State* state) const
+{
+    for (const auto& set : {_solid, _through})
+        set->releaseGLObjects(state);
+}
+
 std::vector<osg::StateSet*> HandleLook::passes() const
 {
     if (_throughOpacity == 0.0) return {_solid.get()};

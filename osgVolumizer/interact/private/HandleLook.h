@@ -18,6 +18,8 @@ public:
 
     void setThroughOpacity(double opacity);
     double throughOpacity() const { return _throughOpacity; }
+    void resizeGLObjectBuffers(unsigned int maximum);
+    void releaseGLObjects(osg::State* state) const;
     /// What to cull with, one after the other.
     std::vector<osg::StateSet*> passes() const;
 

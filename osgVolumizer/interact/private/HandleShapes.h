@@ -31,7 +31,7 @@ osg::ref_ptr<osgManipulator::Dragger> makePlaneDragger();
 /// The box from -0.5 to 0.5: tabs on its faces, and faces that slide.
 osg::ref_ptr<osgManipulator::Dragger> makeBoxDragger();
 /// The sphere of radius 0.5: arrows move it, boxes where the axes leave it change its size, each
-/// along its own axis (see sphereOf()).
+/// along its own axis (see radiusOf()).
 osg::ref_ptr<osgManipulator::Dragger> makeSphereDragger();
 /// Arrows along the axes, and rings to turn by, within a radius of 1.
 osg::ref_ptr<osgManipulator::Dragger> makePartDragger();

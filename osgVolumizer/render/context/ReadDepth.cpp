@@ -7,10 +7,10 @@
 namespace osgVolumizer {
 namespace render {
 
-std::optional<double> readDepth(osg::State& state, double x, double y)
+std::optional<double> readDepth(osg::State& state, const osg::Viewport& viewport, double x,
+                                double y)
 {
-    const osg::Viewport* viewport = state.getCurrentViewport();
-    if (!viewport || !(x >= 0.0 && y >= 0.0 && x < viewport->width() && y < viewport->height()))
+    if (!(x >= 0.0 && y >= 0.0 && x < viewport.width() && y < viewport.height()))
         return std::nullopt;
     discardErrors();
     GLint alignment = 4, buffer = 0;
@@ -20,8 +20,8 @@ std::optional<double> readDepth(osg::State& state, double x, double y)
     if (buffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER_ARB, 0);
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     GLfloat depth = -1.0f;
-    glReadPixels(static_cast<GLint>(std::floor(viewport->x() + x)),
-                 static_cast<GLint>(std::floor(viewport->y() + y)), 1, 1, GL_DEPTH_COMPONENT,
+    glReadPixels(static_cast<GLint>(std::floor(viewport.x() + x)),
+                 static_cast<GLint>(std::floor(viewport.y() + y)), 1, 1, GL_DEPTH_COMPONENT,
                  GL_FLOAT, &depth);
     glPixelStorei(GL_PACK_ALIGNMENT, alignment);
     if (buffer) gl.glBindBuffer(GL_PIXEL_PACK_BUFFER_ARB, GLuint(buffer));

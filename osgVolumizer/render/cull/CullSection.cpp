@@ -80,7 +80,10 @@ osg::BoundingBox boundsOf(const core::Box3d& box, const glm::dvec3& from)
     osg::BoundingBox bounds;
     for (const int corner : {0, 7}) {
         const glm::dvec3 p = box.corner(corner) - from;
-        bounds.expandBy(osg::Vec3(osg::Vec3d(p.x, p.y, p.z)));
+        osg::Vec3 rounded(osg::Vec3d(p.x, p.y, p.z));
+        for (int axis = 0; axis < 3; ++axis) // outwards
+            rounded[axis] = std::nextafter(rounded[axis], corner == 0 ? -INFINITY : INFINITY);
+        bounds.expandBy(rounded);
     }
     return bounds;
 }

@@ -91,8 +91,10 @@ CoarseTexture BrickTexture::apply(osg::RenderInfo& renderInfo, const ContextLimi
         const bool current = !changes || copy->modifiedCount == changes->modifiedCount;
         if (applyMade() && current) return coarseTexture(*copy->texture, _size);
     }
-    if (changes && update(renderInfo, *changes, *copy, unit))
-        return coarseTexture(*copy->texture, _size);
+    if (changes && update(renderInfo, *changes, *copy, unit)) {
+        std::lock_guard<std::mutex> lock(copy->mutex);
+        if (copy->texture) return coarseTexture(*copy->texture, _size);
+    }
     const osg::ref_ptr<const osg::Image> texels = load();
     if (!texels) return {};
     std::lock_guard<std::mutex> lock(copy->mutex);

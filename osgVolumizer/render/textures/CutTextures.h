@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../../RenderData.h"
+#include "../../core/RecencyCache.h"
 #include "../../core/cutting/DistanceField.h"
 
 #include <osg/Texture3D>
@@ -11,7 +12,7 @@
 namespace osgVolumizer {
 namespace render {
 
-/// The grid of a VolumeCut's last state, as a texture. Kept with the VolumeCut. Thread safe.
+/// The grids of a VolumeCut, as textures. Kept with the VolumeCut. Thread safe.
 class CutTextures : public RenderData
 {
 public:
@@ -22,8 +23,8 @@ public:
 
 private:
     mutable std::mutex _mutex;
-    std::shared_ptr<const core::DistanceField> _field;
-    osg::ref_ptr<osg::Texture3D> _texture;
+    core::RecencyCache<std::shared_ptr<const core::DistanceField>, osg::ref_ptr<osg::Texture3D>>
+        _textures{8};
 };
 
 } // namespace render
