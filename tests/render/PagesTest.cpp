@@ -355,6 +355,33 @@ TEST_F(Pages, ADiskThatFailsNowAndThenIsAskedAgain)
     EXPECT_EQ(reports.count("the disk is dead"), 1);
 }
 
+// From afar, samples of a coarser level are several voxels apart, however they are interpolated.
+TEST_F(Pages, CoarseOnesLieWhereTheyAreWhateverTheInterpolation)
+{
+    constexpr int LARGE = 120;
+    const auto picture = [&](const std::function<void(A&)>& change) {
+        const osg::ref_ptr<FormulaSource> source = new FormulaSource(LARGE, waves);
+        const osg::ref_ptr<A> volume = volumeOf(source);
+        change(*volume);
+        support::SceneRenderer renderer(volume, viewOf(LARGE, {700, -500, 500}));
+        const FloatImage settled = settle(renderer);
+        EXPECT_EQ(source->reads[0], 0); // the volume itself is not read
+        return settled;
+    };
+    const FloatImage linear = picture([](A&) {});
+    EXPECT_GT(covered(linear), 100u);
+    EXPECT_LT(largest(picture([](A& a) { a.setExactFiltering(true); }), linear), 1e-3);
+    EXPECT_LT(largest(picture([](A& a) { a.setInterpolation(A::NEAREST); }), linear), 0.1);
+    EXPECT_LT(largest(picture([](A& a) { a.setLookup(A::BEFORE_INTERPOLATION); }), linear), 0.02);
+    const auto shaded = [](bool exact) {
+        return [exact](A& a) {
+            a.setShading(true);
+            a.setExactFiltering(exact);
+        };
+    };
+    EXPECT_LT(largest(picture(shaded(true)), picture(shaded(false))), 5e-3);
+}
+
 TEST_F(Pages, ADeadDiskLeavesACoarsePictureAndOneMessage)
 {
     constexpr int size = 70;

@@ -26,14 +26,22 @@ uniform float stepFraction;
 #endif
 
 #ifdef FETCH
-// Places in the brick are coordinates of its samples. The offset is a whole number.
-#define VOXEL_LENGTH vec3(1.0)
+// Places in the brick are coordinates of its samples. Those of a coarser level lie several voxels apart; else the
+// offset is a whole number.
+#define VOXEL_LENGTH samplesPerVoxel()
 #define FIRST_PLACE vec3(0.0)
 #define LAST_PLACE vec3(textureSize(voxels, 0) - 1)
 
+vec3 samplesPerVoxel()
+{
+    vec3 rate = textureScale * vec3(textureSize(voxels, 0));
+    return mix(rate, vec3(1.0), lessThan(abs(rate - 1.0), vec3(1e-3)));
+}
+
 vec3 placeOf(vec3 voxelCoordinate)
 {
-    return voxelCoordinate - round(0.5 - textureOffset * vec3(textureSize(voxels, 0)));
+    vec3 rate = samplesPerVoxel(), first = 0.5 - textureOffset * vec3(textureSize(voxels, 0));
+    return voxelCoordinate * rate - mix(first, round(first), equal(rate, vec3(1.0)));
 }
 
 TEXEL texelAt(ivec3 i)
