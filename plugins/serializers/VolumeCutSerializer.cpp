@@ -60,6 +60,14 @@ void fillRegions(const VolumeCut& cut, Record& record, const osgDB::OutputStream
             record.add(name + "Triangles", region.getMesh()->indices, 9);
     }
     record.add("RegionCount", Field::Integers{count});
+    Field::Doubles masks;
+    for (unsigned i = 0; i < cut.getNumRegions(); ++i) {
+        const CutRegion& region = cut.getRegion(i);
+        if (isMask(region))
+            masks.insert(masks.end(), {region.isComplement() ? 1.0 : 0.0, region.getMaskLow(),
+                                       region.getMaskHigh()});
+    }
+    if (!masks.empty()) record.add("Masks", masks, 3); // outside, low, high
 }
 
 Status readRegion(Record& record, unsigned number, CutRegion& region)
@@ -100,8 +108,17 @@ Status readRegion(Record& record, unsigned number, CutRegion& region)
     return Status();
 }
 
+// Of the cut that is read: their voxels follow.
+thread_local std::vector<CutRegion> masksToCome;
+
 Status applyRegions(Record& record, const osgDB::Options*, VolumeCut& cut)
 {
+    masksToCome.clear();
+    if (Field::Doubles masks; record.has("Masks") && record.take("Masks", masks).ok())
+        for (std::size_t m = 0; m + 2 < masks.size(); m += 3) {
+            const CutRegion mask = CutRegion::mask(nullptr, masks[m + 1], masks[m + 2]);
+            masksToCome.push_back(masks[m] != 0.0 ? mask.complement() : mask);
+        }
     Field::Doubles softness;
     int resolution = 0, count = 0;
     Status status = record.get("Softness", 1, softness);
@@ -130,32 +147,24 @@ bool checkMasks(const VolumeCut& cut)
 
 bool writeMasks(osgDB::OutputStream& os, const VolumeCut& cut)
 {
-    unsigned count = 0;
+    os << os.BEGIN_BRACKET << std::endl;
     for (unsigned i = 0; i < cut.getNumRegions(); ++i)
-        count += isMask(cut.getRegion(i));
-    os << count << os.BEGIN_BRACKET << std::endl;
-    for (unsigned i = 0; i < cut.getNumRegions(); ++i) {
-        const CutRegion& region = cut.getRegion(i);
-        if (!isMask(region)) continue;
-        os << region.isComplement() << region.getMaskLow() << region.getMaskHigh() << std::endl;
-        os.writeObject(region.getMask());
-    }
+        if (isMask(cut.getRegion(i))) os.writeObject(cut.getRegion(i).getMask());
     os << os.END_BRACKET << std::endl;
     return true;
 }
 
 bool readMasks(osgDB::InputStream& is, VolumeCut& cut)
 {
-    unsigned count = 0;
-    is >> count >> is.BEGIN_BRACKET;
-    for (unsigned i = 0; i < count && !is.getException(); ++i) {
-        bool complement = false;
-        double low = 0.0, high = 0.0;
-        is >> complement >> low >> high;
+    const std::vector<CutRegion> masks = std::move(masksToCome);
+    masksToCome.clear();
+    is >> is.BEGIN_BRACKET;
+    for (const CutRegion& mask : masks) {
         const osg::ref_ptr<Voxels> voxels = is.readObjectOfType<Voxels>();
         if (is.getException()) break;
-        const CutRegion mask = CutRegion::mask(voxels, low, high);
-        reportReadError(is, cut, cut.addRegion(complement ? mask.complement() : mask));
+        const CutRegion region = CutRegion::mask(voxels, mask.getMaskLow(), mask.getMaskHigh());
+        const CallerReports withName;
+        reportReadError(is, cut, cut.addRegion(mask.isComplement() ? region.complement() : region));
     }
     is >> is.END_BRACKET;
     return true;

@@ -340,7 +340,7 @@ TEST_P(SerializerTest, OlderVersionsKeepDefaults)
     a->setShading(true);
     std::string content = write(*a);
     const std::size_t version =
-        content.find("1 6", content.find("Version", content.find("Sampling")));
+        content.find("1 7", content.find("Version", content.find("Sampling")));
     ASSERT_NE(version, std::string::npos);
     content[version + 2] = '2';
     const auto read = SerializerTest::read(content);

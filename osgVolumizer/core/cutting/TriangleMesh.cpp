@@ -72,9 +72,15 @@ TriangleMesh welded(const TriangleMesh& mesh, double tolerance)
         result.vertices.push_back(p);
         return number;
     };
+    // In their order, so that a mesh that needs no welding stays as it is.
+    std::vector<std::uint32_t> numbers(mesh.vertices.size(), NONE);
+    for (const std::uint32_t i : mesh.indices)
+        numbers[i] = 0;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (numbers[i] != NONE) numbers[i] = numberOf(mesh.vertices[i]);
     for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
-        const std::uint32_t i[3] = {numberOf(mesh.corner(t, 0)), numberOf(mesh.corner(t, 1)),
-                                    numberOf(mesh.corner(t, 2))};
+        const std::uint32_t* corners = &mesh.indices[3 * t];
+        const std::uint32_t i[3] = {numbers[corners[0]], numbers[corners[1]], numbers[corners[2]]};
         if (i[0] == i[1] || i[1] == i[2] || i[2] == i[0]) continue;
         result.indices.insert(result.indices.end(), i, i + 3);
     }
