@@ -32,11 +32,6 @@ std::optional<osg::Vec3d> SculptHandler::pointUnder(const Event& event,
     return pick.point * osg::computeWorldToLocal(pick.nodePath);
 }
 
-bool SculptHandler::isHeld(const Event& event)
-{
-    return (event.getButtonMask() & Event::LEFT_MOUSE_BUTTON) != 0;
-}
-
 bool SculptHandler::handleKey(const Event& event)
 {
     const int key = event.getUnmodifiedKey();
@@ -50,10 +45,10 @@ bool SculptHandler::handleKey(const Event& event)
 bool SculptHandler::handle(const Event& event, osgGA::GUIActionAdapter& actions)
 {
     const auto type = event.getEventType();
-    if (_drawing && (type == Event::RELEASE || (type == Event::DRAG && !isHeld(event)))) {
+    if (_drawing && type == Event::RELEASE) { // whoever else has handled it
         _sculptor.endStroke();
         _drawing = false;
-        return type == Event::RELEASE;
+        return true;
     }
     if (event.getHandled() || !_sculptor.getVoxels()) return false;
     if (type == Event::KEYDOWN) {

@@ -34,7 +34,6 @@ protected:
 private:
     std::optional<osg::Vec3d> pointUnder(const osgGA::GUIEventAdapter& event,
                                          osgGA::GUIActionAdapter& actions) const;
-    static bool isHeld(const osgGA::GUIEventAdapter& event);
     bool handleKey(const osgGA::GUIEventAdapter& event);
 
     Sculptor _sculptor;
