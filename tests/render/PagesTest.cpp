@@ -137,11 +137,15 @@ TEST_F(Pages, NoFrameWaitsForARead)
     // The coarse levels come, the finest does not.
     source->openFrom(1);
     constexpr double pages = 27.0; // of the level above the finest
+    int quiet = 0; // frames in which nothing came: parts of coarser pages count, too
     const auto isShown = [&](const FloatImage& picture) {
-        return covered(picture) > 1000 && renderer.counters()["osgVolumizer bricks drawn"] >= pages;
+        quiet = renderer.counters()["osgVolumizer bricks uploaded"] > 0.0 ? 0 : quiet + 1;
+        return covered(picture) > 1000 && quiet > 20 &&
+               renderer.counters()["osgVolumizer bricks drawn"] >= pages;
     };
     const FloatImage coarse = renderUntil(renderer, isShown);
-    EXPECT_TRUE(isShown(coarse));
+    EXPECT_GE(source->reads[1], int(pages));
+    EXPECT_GT(quiet, 20);
     source->openFrom(0);
     const FloatImage fine = settle(renderer);
     EXPECT_EQ(renderer.counters()["osgVolumizer pages missing"], 0.0);
@@ -373,13 +377,6 @@ TEST_F(Pages, CoarseOnesLieWhereTheyAreWhateverTheInterpolation)
     EXPECT_LT(largest(picture([](A& a) { a.setExactFiltering(true); }), linear), 1e-3);
     EXPECT_LT(largest(picture([](A& a) { a.setInterpolation(A::NEAREST); }), linear), 0.1);
     EXPECT_LT(largest(picture([](A& a) { a.setLookup(A::BEFORE_INTERPOLATION); }), linear), 0.02);
-    const auto shaded = [](bool exact) {
-        return [exact](A& a) {
-            a.setShading(true);
-            a.setExactFiltering(exact);
-        };
-    };
-    EXPECT_LT(largest(picture(shaded(true)), picture(shaded(false))), 5e-3);
 }
 
 TEST_F(Pages, ADeadDiskLeavesACoarsePictureAndOneMessage)
