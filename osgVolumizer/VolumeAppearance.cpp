@@ -3,6 +3,7 @@
 #include "VolumeCut.h"
 #include "core/NumberRule.h"
 #include "core/Text.h"
+#include "private/Copied.h"
 #include "private/Flattening.h"
 #include "private/Renderer.h"
 
@@ -19,13 +20,6 @@ ReportedStatus refuse(const VolumeAppearance& appearance, const char* field, dou
     return reported({ErrorCode::VALUE_INVALID,
                      "VolumeAppearance \"" + appearance.getName() + "\": " + field + " is " +
                          core::formatNumber(value) + ", expected " + expected});
-}
-
-/// The same object, or with DEEP_COPY_OBJECTS one of its own.
-template <class T>
-osg::ref_ptr<T> copied(const osg::ref_ptr<T>& object, const osg::CopyOp& op)
-{
-    return dynamic_cast<T*>(op(static_cast<const osg::Object*>(object.get())));
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include "core/Text.h"
 #include "core/voxels/ValueReader.h"
+#include "private/Copied.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -168,11 +169,10 @@ VolumeCut::VolumeCut(const VolumeCut& o, const osg::CopyOp& op)
 {
     for (CutRegion& region : _regions) {
         if (!region.getMask() || !(op.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)) continue;
-        const osg::ref_ptr<osg::Object> mask =
-            op(static_cast<const osg::Object*>(region.getMask()));
-        const CutRegion copied = CutRegion::mask(dynamic_cast<Voxels*>(mask.get()),
-                                                 region.getMaskLow(), region.getMaskHigh());
-        region = region.isComplement() ? copied.complement() : copied;
+        const CutRegion own =
+            CutRegion::mask(copied(osg::ref_ptr<Voxels>(region.getMask()), op).get(),
+                            region.getMaskLow(), region.getMaskHigh());
+        region = region.isComplement() ? own.complement() : own;
     }
 }
 

@@ -3,7 +3,9 @@
 #include "core/NumberRule.h"
 #include "core/RecencyCache.h"
 #include "core/Text.h"
+#include "private/Copied.h"
 #include "private/Flattening.h"
+#include "private/OutwardBox.h"
 #include "private/Renderer.h"
 #include "private/SliceFaces.h"
 #include "private/SliceShape.h"
@@ -70,23 +72,6 @@ const Voxels* voxelsAbove(const osg::Node& node)
     return nullptr;
 }
 
-// A number that floats do not exceed.
-osg::Vec3 outwards(const glm::dvec3& p, float direction)
-{
-    osg::Vec3 result;
-    for (int axis = 0; axis < 3; ++axis)
-        result[axis] = std::nextafter(static_cast<float>(p[axis]),
-                                      direction * std::numeric_limits<float>::infinity());
-    return result;
-}
-
-template <class T>
-osg::ref_ptr<T> copied(const osg::ref_ptr<T>& object, const osg::CopyOp& op)
-{
-    if (!(op.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS) || !object) return object;
-    return dynamic_cast<T*>(object->clone(op));
-}
-
 } // namespace SliceNode
 
 VolumeSlice::VolumeSlice() : _private(new Private)
@@ -98,9 +83,8 @@ VolumeSlice::VolumeSlice() : _private(new Private)
 
 VolumeSlice::VolumeSlice(const VolumeSlice& o, const osg::CopyOp& op)
     : osg::Drawable(o, op), _private(new Private), _polygon(o._polygon),
-      _geometry(SliceNode::copied(o._geometry, op)), _placeUnit(o._placeUnit),
-      _region(SliceNode::copied(o._region, op)),
-      _lookupTable(SliceNode::copied(o._lookupTable, op)), _window(o._window), _opacity(o._opacity),
+      _geometry(copied(o._geometry, op)), _placeUnit(o._placeUnit), _region(copied(o._region, op)),
+      _lookupTable(copied(o._lookupTable, op)), _window(o._window), _opacity(o._opacity),
       _usesTableOpacity(o._usesTableOpacity), _exactFiltering(o._exactFiltering),
       _followsCut(o._followsCut), _interpolation(o._interpolation), _thickness(o._thickness),
       _samplingPeriod(o._samplingPeriod), _reduction(o._reduction),
@@ -320,8 +304,7 @@ osg::BoundingBox VolumeSlice::computeBoundingBox() const
     const auto faces =
         voxels && voxels->valid() ? slices::SliceAccess::faces(*this, *voxels) : nullptr;
     if (!faces || faces->bounds.empty()) return {};
-    return {SliceNode::outwards(faces->bounds.min, -1.0f),
-            SliceNode::outwards(faces->bounds.max, 1.0f)};
+    return outwardBox(faces->bounds);
 }
 
 osg::BoundingSphere VolumeSlice::computeBound() const

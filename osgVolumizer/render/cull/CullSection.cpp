@@ -14,6 +14,7 @@
 #include "SectionBoxes.h"
 
 #include "../../VolumeSlice.h"
+#include "../../private/OutwardBox.h"
 #include "../context/RenderDataAccess.h"
 
 #include <osgUtil/CullVisitor>
@@ -77,15 +78,7 @@ osg::Matrixd voxelToObject(const Voxels& voxels)
 
 osg::BoundingBox boundsOf(const core::Box3d& box, const glm::dvec3& from)
 {
-    osg::BoundingBox bounds;
-    for (const int corner : {0, 7}) {
-        const glm::dvec3 p = box.corner(corner) - from;
-        osg::Vec3 rounded(osg::Vec3d(p.x, p.y, p.z));
-        for (int axis = 0; axis < 3; ++axis) // outwards
-            rounded[axis] = std::nextafter(rounded[axis], corner == 0 ? -INFINITY : INFINITY);
-        bounds.expandBy(rounded);
-    }
-    return bounds;
+    return outwardBox({box.min - from, box.max - from});
 }
 
 VolumeAppearance::Interpolation usedInterpolation(const VolumeSlice& slice, const Voxels& voxels)
