@@ -1,6 +1,7 @@
 #include "ReadVoxels.h"
 
 #include "VoxelSeries.h"
+#include "io/FindVolume.h"
 #include "io/PluginFile.h"
 #include "io/PyramidSource.h"
 #include "io/VoxelFiles.h"
@@ -8,128 +9,68 @@
 
 #include <osg/Notify>
 #include <osgDB/FileUtils>
-#include <osgDB/Registry>
 
 #include <exception>
-#include <filesystem>
-#include <optional>
 
 namespace osgVolumizer {
 
 namespace {
 
-std::vector<std::string> searchFolders(const osgDB::Options* options)
+io::VolumeRequest requestOf(const std::string& path, const io::VoxelOptions& said)
 {
-    std::vector<std::string> folders;
-    if (options)
-        folders.assign(options->getDatabasePathList().begin(),
-                       options->getDatabasePathList().end());
-    const osgDB::FilePathList& global = osgDB::Registry::instance()->getDataFilePathList();
-    folders.insert(folders.end(), global.begin(), global.end());
-    return folders;
+    io::VolumeRequest request;
+    request.path = path;
+    request.dataset = said.dataset.value_or("");
+    request.channel = said.channel;
+    request.dimensions = said.dimensions.value_or("");
+    return request;
 }
 
-// The name of a volume in the folder that it was found in.
-std::string inFolderOf(const std::string& path, const std::string& name)
-{
-    namespace fs = std::filesystem;
-    return (fs::absolute(path).parent_path() / fs::path(name).filename()).string();
-}
-
-Result<io::Source> readFiles(const Result<std::vector<std::string>>& paths,
-                             const Progress& progress)
-{
-    if (!paths.ok()) return paths.status;
-    return io::readStack(*paths, progress);
-}
-
-// One file that was found. Raw files are found by readSource().
+// Of one file or a Zarr folder.
 Result<io::Source> readFile(const std::string& path, const io::VoxelOptions& said,
                             const Progress& progress)
 {
-    if (const io::PluginFormat* format = io::pluginFormatOf(path))
-        return io::readByPlugin(*format, path, said);
+    const io::FileKind kind = io::fileKindOf(path);
+    if (const auto formats = io::pluginFormatsOf(kind); !formats.empty())
+        return io::readByPlugin(formats, requestOf(path, said));
+    if (kind == io::FileKind::NUMPY) return io::readNumpy(path, progress);
     if (io::PyramidSource::isPyramid(path)) return io::readPyramid(path);
-    return io::readImage(path, progress);
+    return io::readImage(path, said.channel, progress);
 }
 
-// The files of a name that stands for several, and for raw ones what they are.
-Result<std::vector<std::string>> listSteps(const std::string& name, const osgDB::Options* options,
-                                           std::optional<io::RawName>& raw)
+Result<io::Source> readSeries(const io::FoundVolume& found, const io::VoxelOptions& said)
 {
-    std::string files = name;
-    if (io::looksRaw(name)) {
-        const Result<io::RawName> parsed = io::parseRawName(name);
-        if (!parsed.ok()) return parsed.status;
-        raw = *parsed;
-        files = parsed->fileName;
-    }
-    if (io::looksLikePattern(files)) return io::listPattern(files, searchFolders(options));
-    const std::string path = osgDB::findDataFile(files, options);
-    std::error_code unknown;
-    if (path.empty())
-        return Status(ErrorCode::FILE_NOT_FOUND, "volume \"" + files + "\" was not found");
-    if (!std::filesystem::is_directory(path, unknown))
-        return Status(ErrorCode::VALUE_INVALID,
-                      "a series of time steps is a folder or a pattern such as name%03d.tif");
-    return io::listFolder(path, true);
-}
-
-Result<io::Source> readSeries(const std::string& name, const osgDB::Options* options,
-                              const io::VoxelOptions& said, std::string& found)
-{
-    std::optional<io::RawName> raw;
-    const Result<std::vector<std::string>> paths = listSteps(name, options, raw);
-    if (!paths.ok()) return paths.status;
-    found = inFolderOf(paths->front(), name);
-    const auto open = [paths = *paths, raw, said](int step) {
-        const std::string& path = paths[std::size_t(step)];
+    const auto open = [files = found.files, raw = found.raw, said](int step) {
+        const std::string& path = files[std::size_t(step)];
         return raw ? io::readRaw(*raw, path, {}) : readFile(path, said, {});
     };
     osg::ref_ptr<VoxelSeries> series = new VoxelSeries;
     const CallerReports quiet;
-    Status status = series->setSteps(static_cast<int>(paths->size()), open);
+    Status status = series->setSteps(static_cast<int>(found.files.size()), open);
     if (!status.ok()) return status;
     return io::Source(series);
 }
 
-// Also finds the absolute name of the volume.
-Result<io::Source> readSource(std::string name, const osgDB::Options* options,
-                              const io::VoxelOptions& said, const Progress& progress,
-                              std::string& found)
+// How a plugin is asked for all that was found, if it is a plugin's.
+std::vector<io::PluginFormat> pluginsFor(const io::FoundVolume& found, const io::VoxelOptions& said,
+                                         io::VolumeRequest& request)
 {
-    while (name.size() > 1 && name.back() == '/')
-        name.pop_back();
-    if (said.series.value_or(false)) return readSeries(name, options, said, found);
-    const std::string path = name.empty() ? name : osgDB::findDataFile(name, options);
-    if (!path.empty()) {
-        found = inFolderOf(path, name);
-        std::error_code unknown; // OSG takes sockets for folders
-        if (std::filesystem::is_directory(path, unknown))
-            return readFiles(io::listFolder(path), progress);
-        Result<io::Source> source = readFile(path, said, progress);
-        if (source.ok() && io::isSliceOfSeries(path))
-            OSG_NOTICE << "osgVolumizer: " << path << " is one slice of a series; the name of its "
-                       << "folder opens all that lie there" << std::endl;
-        return source;
-    }
-    if (io::looksRaw(name)) {
-        const Result<io::RawName> raw = io::parseRawName(name);
-        if (!raw.ok()) return raw.status;
-        const std::string rawPath = osgDB::findDataFile(raw->fileName, options);
-        if (rawPath.empty())
-            return Status(ErrorCode::FILE_NOT_FOUND,
-                          "raw file " + raw->fileName + " was not found");
-        found = inFolderOf(rawPath, name);
-        return io::readRaw(*raw, rawPath, progress);
-    }
-    if (io::looksLikePattern(name)) {
-        const Result<std::vector<std::string>> files =
-            io::listPattern(name, searchFolders(options));
-        if (files.ok() && !files->empty()) found = inFolderOf(files->front(), name);
-        return readFiles(files, progress);
-    }
-    return Status(ErrorCode::FILE_NOT_FOUND, "volume \"" + name + "\" was not found");
+    if (found.raw || said.series.value_or(false)) return {};
+    request = requestOf(found.several ? found.path : found.files.front(), said);
+    if (found.several) request.files = found.files;
+    return io::pluginFormatsOf(io::fileKindOf(found.files.front()));
+}
+
+Result<io::Source> readFound(const io::FoundVolume& found, const io::VoxelOptions& said,
+                             const Progress& progress)
+{
+    if (said.series.value_or(false)) return readSeries(found, said);
+    if (found.raw) return io::readRaw(*found.raw, found.files.front(), progress);
+    if (!found.several) return readFile(found.files.front(), said, progress);
+    io::VolumeRequest request;
+    if (const auto formats = pluginsFor(found, said, request); !formats.empty())
+        return io::readByPlugin(formats, request);
+    return io::readStack(found.files, progress);
 }
 
 Status apply(Voxels& voxels, const io::VoxelOptions& options)
@@ -165,8 +106,7 @@ Result<osg::ref_ptr<Voxels>> makeVoxels(const Result<io::Source>& source,
     return voxels;
 }
 
-Result<osg::ref_ptr<Voxels>> read(const std::string& name, const osgDB::Options* options,
-                                  const Progress& progress)
+Result<io::VoxelOptions> optionsOf(const std::string& name, const osgDB::Options* options)
 {
     const Result<io::VoxelOptions> said =
         io::parseVoxelOptions(options ? options->getOptionString() : std::string());
@@ -174,12 +114,22 @@ Result<osg::ref_ptr<Voxels>> read(const std::string& name, const osgDB::Options*
     for (const std::string& option : said->foreign)
         OSG_INFO << "osgVolumizer: " << name << ": option \"" << option
                  << "\" is none of a volume's, and left to others" << std::endl;
-    std::string found;
+    return said;
+}
+
+Result<osg::ref_ptr<Voxels>> read(const std::string& name, const osgDB::Options* options,
+                                  const Progress& progress)
+{
+    const Result<io::VoxelOptions> said = optionsOf(name, options);
+    if (!said.ok()) return said.status;
+    const Result<io::FoundVolume> found =
+        io::findVolume(name, options, said->series.value_or(false));
+    if (!found.ok()) return found.status;
     Result<osg::ref_ptr<Voxels>> voxels =
-        makeVoxels(readSource(name, options, *said, progress, found), *said, name);
+        makeVoxels(readFound(*found, *said, progress), *said, name);
     if (!voxels.ok()) return voxels;
     (*voxels)->setFileName(name);
-    (*voxels)->setFilePath(found);
+    (*voxels)->setFilePath(found->path);
     (*voxels)->setFileOptions(said->voxelText());
     return voxels;
 }
@@ -198,7 +148,25 @@ Result<osg::ref_ptr<Voxels>> read(const std::vector<std::string>& names,
             return Status(ErrorCode::FILE_NOT_FOUND, "slice " + name + " was not found",
                           static_cast<std::int64_t>(paths.size()) - 1);
     }
-    return makeVoxels(io::readStack(paths, progress), *said, names.front());
+    return makeVoxels(readFound({paths.front(), paths, true, {}}, *said, progress), *said,
+                      names.front());
+}
+
+Result<std::vector<VolumeEntry>> list(const std::string& name, const osgDB::Options* options)
+{
+    const Result<io::VoxelOptions> said = optionsOf(name, options);
+    if (!said.ok()) return said.status;
+    const Result<io::FoundVolume> found =
+        io::findVolume(name, options, said->series.value_or(false));
+    if (!found.ok()) return found.status;
+    io::VolumeRequest request;
+    if (const auto formats = pluginsFor(*found, *said, request); !formats.empty())
+        return io::listByPlugin(formats, request);
+    const Result<io::Source> source = readFound(*found, *said, {});
+    if (!source.ok()) return source.status;
+    VolumeEntry entry = io::entryOf(**source, "");
+    entry.chosen = true;
+    return std::vector<VolumeEntry>{entry};
 }
 
 } // namespace
@@ -221,6 +189,15 @@ Result<osg::ref_ptr<Voxels>> readSlices(const std::vector<std::string>& names,
     } catch (const std::exception& e) {
         return Status(ErrorCode::FILE_UNREADABLE,
                       std::string("slices cannot be read: ") + e.what());
+    }
+}
+
+Result<std::vector<VolumeEntry>> listVolumes(const std::string& name, const osgDB::Options* options)
+{
+    try {
+        return list(name, options);
+    } catch (const std::exception& e) {
+        return Status(ErrorCode::FILE_UNREADABLE, name + " cannot be read: " + e.what());
     }
 }
 

@@ -40,8 +40,10 @@ public:
         glm::dvec3 spacing{1.0}; ///< object units between samples
         glm::dvec3 origin{0.0};  ///< object position of sample (0,0,0)
         /// Where the voxel axes point, a unit vector each, as far as the file says: in the frame of
-        /// DICOM and ITK, x to the left, y to the back, z to the head. Of no effect on voxels by
-        /// themselves: readVolume() turns what it makes.
+        /// DICOM and ITK, x to the left, y to the back, z to the head (LPS). They may be skewed and
+        /// left-handed. Voxel v lies at axes * (origin + spacing * v) in that frame. Of no effect
+        /// on voxels by themselves: readVolume() turns what it makes, so that all that it reads
+        /// lies where the files say.
         glm::dmat3 axes{1.0};
 
         std::int64_t sizeInBytes() const;

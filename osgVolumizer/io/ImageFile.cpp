@@ -164,7 +164,7 @@ std::string ImageFile::text() const
            spec().format.c_str();
 }
 
-Result<PixelFormat> ImageFile::pixelFormat() const
+Result<PixelFormat> ImageFile::pixelFormat(std::optional<int> channel) const
 {
     PixelFormat format;
     // Channels of different types come as the widest of them.
@@ -173,6 +173,13 @@ Result<PixelFormat> ImageFile::pixelFormat() const
         return Status(ErrorCode::NOT_SUPPORTED, _path + " has pixels of type " +
                                                     spec().format.c_str() +
                                                     ", which is no voxel type");
+    format.channel = channel;
+    if (channel && *channel >= spec().nchannels)
+        return Status(ErrorCode::INDEX_OUT_OF_RANGE,
+                      _path + " has no channel " + std::to_string(*channel) + ", but " +
+                          std::to_string(spec().nchannels) + ", from 0 on");
+    format.first = channel.value_or(0);
+    if (channel) return format;
     format.components = isRgba(spec()) ? 4 : 1;
     format.channels = isRgba(spec()) ? 4 : isRgb(spec()) ? 3 : 1;
     return format;
@@ -189,9 +196,10 @@ bool ImageFile::readPixels(const PixelFormat& format, int z, int end, void* dest
     const bool tiled = s.tile_width > 0;
     const bool read =
         tiled ? _input->read_tiles(_subimage, 0, s.x, s.x + s.width, s.y, s.y + s.height, s.z + z,
-                                   s.z + end, 0, format.channels, format.read, destination)
-              : _input->read_scanlines(_subimage, 0, s.y, s.y + s.height, s.z + z, 0,
-                                       format.channels, format.read, destination);
+                                   s.z + end, format.first, format.first + format.channels,
+                                   format.read, destination)
+              : _input->read_scanlines(_subimage, 0, s.y, s.y + s.height, s.z + z, format.first,
+                                       format.first + format.channels, format.read, destination);
     // A TIFF strip that is cut short is filled with zeros and only noted.
     return read && !_input->has_error();
 }

@@ -5,6 +5,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace osgVolumizer {
@@ -14,7 +15,9 @@ namespace io {
 struct PixelFormat
 {
     OIIO::TypeDesc read = OIIO::TypeDesc::UINT8; ///< what OpenImageIO is asked for
-    int channels = 1;                            ///< the first so many are read
+    std::optional<int> channel;                  ///< that was asked for
+    int first = 0;                               ///< of those that are read
+    int channels = 1;                            ///< so many are read
     VoxelType type = VoxelType::UINT8;
     int components = 1;
 
@@ -24,7 +27,10 @@ struct PixelFormat
         return channels == components && read != OIIO::TypeDesc::INT64 &&
                read != OIIO::TypeDesc::UINT64;
     }
-    bool operator==(const PixelFormat& o) const { return read == o.read && channels == o.channels; }
+    bool operator==(const PixelFormat& o) const
+    {
+        return read == o.read && channels == o.channels && first == o.first;
+    }
 };
 
 /// An image file that is open for reading. OpenImageIO's exceptions end here.
@@ -42,8 +48,9 @@ public:
     glm::ivec3 size() const;
     /// "128,128,1 pixels of 1 x uint8", for messages.
     std::string text() const;
-    /// The format of the present subimage; NOT_SUPPORTED for types that are no numbers.
-    Result<PixelFormat> pixelFormat() const;
+    /// The format of the present subimage, or of one channel of it; NOT_SUPPORTED for types that
+    /// are no numbers, INDEX_OUT_OF_RANGE for a channel that is not there.
+    Result<PixelFormat> pixelFormat(std::optional<int> channel = {}) const;
     /// Slices that can be read at a time: the depth of a tile.
     int sliceStep() const;
     /// Writes slices [z, z + sliceStep()) of the present subimage, as far as there are any.

@@ -40,7 +40,7 @@ std::int64_t bytesOf(const ImageFile& file, const PixelFormat& format, int slice
 Status compare(const ImageFile& file, const std::string& which, const glm::ivec3& size,
                const PixelFormat& format, const std::string& first)
 {
-    const Result<PixelFormat> own = file.pixelFormat();
+    const Result<PixelFormat> own = file.pixelFormat(format.channel);
     if (!own.ok()) return own.status;
     if (file.size() == size && *own == format) return {};
     return {ErrorCode::SIZE_MISMATCH,
@@ -68,15 +68,12 @@ Result<Source> readDeep(ImageFile& file, const PixelFormat& format, const Progre
 
 } // namespace
 
-Result<Source> readImage(const std::string& path, const Progress& progress)
+Result<Source> readImage(const std::string& path, std::optional<int> channel,
+                         const Progress& progress)
 {
-    if (isDicomFile(path)) {
-        Result<Source> source = readDicom({path}, progress);
-        if (source.status.code != ErrorCode::NOT_SUPPORTED) return source;
-    }
     ImageFile file;
     if (Status status = file.open(path); !status.ok()) return status;
-    const Result<PixelFormat> format = file.pixelFormat();
+    const Result<PixelFormat> format = file.pixelFormat(channel);
     if (!format.ok()) return format.status;
     if (file.size().z > 1) return readDeep(file, *format, progress);
 
@@ -108,10 +105,6 @@ Result<Source> readImage(const std::string& path, const Progress& progress)
 
 Result<Source> readStack(const std::vector<std::string>& paths, const Progress& progress)
 {
-    if (!paths.empty() && isDicomFile(paths.front())) {
-        Result<Source> source = readDicom(paths, progress);
-        if (source.status.code != ErrorCode::NOT_SUPPORTED) return source;
-    }
     Result<MemorySource> source(MemorySource{});
     PixelFormat format;
     glm::ivec3 size(0);

@@ -1,21 +1,20 @@
 #pragma once
 
+#include "FileKind.h"
+#include "VolumeRequest.h"
 #include "VoxelFiles.h"
-#include "VoxelOptions.h"
 
 #include <string>
+#include <vector>
 
 namespace osgVolumizer {
 namespace io {
 
 /// A format that a plugin of this library reads, which is built where another library is found.
 ///
-/// Which extension is whose stands in a table of this library, and is not asked of osgDB: so no
+/// Which kind of file is whose stands in a table of this library, and is not asked of osgDB: so no
 /// plugin of another is loaded, or tried, for a file that is read here; and where the plugin is
-/// missing, there is a sentence about it. The plugin is an osgDB::ReaderWriter for a
-/// pseudo-extension of its own name. It reads "scan.h5" as object "scan.h5.osgvolumizer_hdf5", with
-/// the loader's options dataset and channel, where they are said, as plugin string data. What it
-/// returns is a VoxelSource, or a message of the name of an ErrorCode, ": " and a sentence.
+/// missing, there is a sentence about it. See FormatPlugin.h for how a plugin is asked.
 struct PluginFormat
 {
     const char* plugin; ///< "osgvolumizer_hdf5", of the library osgdb_osgvolumizer_hdf5
@@ -23,11 +22,28 @@ struct PluginFormat
     const char* needs;  ///< completes "build with "
 };
 
-/// By the end of a name, whatever its case; null for all that is not left to a plugin.
-OSGVOLUMIZER_EXPORT const PluginFormat* pluginFormatOf(const std::string& path);
-/// NOT_SUPPORTED where there is no such plugin. Thread safe.
-OSGVOLUMIZER_EXPORT Result<Source> readByPlugin(const PluginFormat& format, const std::string& path,
-                                                const VoxelOptions& options);
+/// Those that read a kind of file, the best first; none for what is not left to plugins.
+OSGVOLUMIZER_EXPORT std::vector<PluginFormat> pluginFormatsOf(FileKind kind);
+/// The ones that write a file of such a name: NIfTI, NRRD, MetaImage, ...
+OSGVOLUMIZER_EXPORT std::vector<PluginFormat> writersOf(const std::string& path);
+
+/// By the first of them that there is; NOT_SUPPORTED where there is none. Expects one at least.
+/// Thread safe.
+OSGVOLUMIZER_EXPORT Result<Source> readByPlugin(const std::vector<PluginFormat>& formats,
+                                                const VolumeRequest& request);
+OSGVOLUMIZER_EXPORT Result<std::vector<VolumeEntry>>
+listByPlugin(const std::vector<PluginFormat>& formats, const VolumeRequest& request);
+OSGVOLUMIZER_EXPORT Status writeByPlugin(const std::vector<PluginFormat>& formats,
+                                         const VoxelSource& source, const std::string& path);
+
+/// What a plugin is asked, from its plugin data; the path is not there. Refuses (VALUE_INVALID)
+/// what this library does not write.
+OSGVOLUMIZER_EXPORT Status decodeRequest(const osgDB::Options* options, VolumeRequest& request);
+/// Whether it is asked for VolumeContents, not for voxels.
+OSGVOLUMIZER_EXPORT bool isListRequest(const osgDB::Options* options);
+
+/// What is known of a source, under a name by which it is asked for.
+OSGVOLUMIZER_EXPORT VolumeEntry entryOf(const VoxelSource& source, const std::string& name);
 
 } // namespace io
 } // namespace osgVolumizer

@@ -4,6 +4,7 @@
 #include "../core/Text.h"
 
 #include <OpenImageIO/imageio.h>
+#include <osgDB/FileNameUtils>
 
 #include <algorithm>
 #include <cctype>
@@ -36,16 +37,23 @@ bool isImageExtension(std::string extension)
     return list.find("," + extension + ",") != std::string::npos;
 }
 
-/// The regular files of a folder, by name; FILE_UNREADABLE where it cannot be listed.
-Result<std::vector<std::string>> filesOf(const std::string& folder)
+/// The regular files of a folder, by name, or of all folders in it; FILE_UNREADABLE where it cannot
+/// be listed.
+Result<std::vector<std::string>> filesOf(const std::string& folder, bool deep)
 {
+    constexpr std::size_t MOST = 1 << 20;
     std::vector<std::string> names;
     std::error_code failed;
-    fs::directory_iterator entry(folder.empty() ? "." : folder, failed), end;
-    while (!failed && entry != end) {
+    fs::recursive_directory_iterator entry(folder.empty() ? "." : folder,
+                                           fs::directory_options::skip_permission_denied, failed),
+        end;
+    while (!failed && entry != end && names.size() < MOST) {
         std::error_code unknown;
-        const std::string name = entry->path().filename().string();
-        if (name[0] != '.' && entry->is_regular_file(unknown)) names.push_back(name);
+        const bool hidden = entry->path().filename().string()[0] == '.';
+        if (!hidden && entry->is_regular_file(unknown))
+            names.push_back(
+                entry->path().lexically_relative(folder.empty() ? "." : folder).string());
+        if (!deep || hidden) entry.disable_recursion_pending();
         entry.increment(failed);
     }
     if (failed)
@@ -126,7 +134,7 @@ Pattern parsePattern(const std::string& text)
 std::map<std::int64_t, std::string> numbered(const Pattern& pattern, const std::string& folder)
 {
     std::map<std::int64_t, std::string> files;
-    const Result<std::vector<std::string>> names = filesOf(folder);
+    const Result<std::vector<std::string>> names = filesOf(folder, false);
     std::int64_t number = 0;
     for (const std::string& name : *names)
         if (pattern.match(name, number)) files[number] = (fs::path(folder) / name).string();
@@ -169,22 +177,36 @@ bool naturalLess(const std::string& a, const std::string& b)
 
 Result<std::vector<std::string>> listFolder(const std::string& folder, bool volumes)
 {
-    Result<std::vector<std::string>> names = filesOf(folder);
+    Result<std::vector<std::string>> names = filesOf(folder, false);
     if (!names.ok()) return names;
-    std::vector<std::string> images, bare, others;
+    const bool wrapped = std::all_of(names->begin(), names->end(), [](const std::string& name) {
+        return osgDB::convertToLowerCase(name).compare(0, 8, "dicomdir") == 0;
+    });
+    if (wrapped) names = filesOf(folder, true);
+    if (!names.ok()) return names;
+    std::vector<std::string> images, bare, dicom, others;
     for (const std::string& name : *names) {
+        const std::string path = (fs::path(folder) / name).string();
         const std::string extension = fs::path(name).extension().string();
-        if (extension.empty()) bare.push_back(name);
-        if (extension.size() > 1 && isImageExtension(extension.substr(1))) images.push_back(name);
-        if (pluginFormatOf(name)) others.push_back(name);
+        const FileKind kind = fileKindOf(path);
+        if (kind == FileKind::DICOM)
+            dicom.push_back(path);
+        else if (!pluginFormatsOf(kind).empty())
+            others.push_back(path);
+        else if (extension.empty())
+            bare.push_back(path);
+        else if (extension.size() > 1 && isImageExtension(extension.substr(1)))
+            images.push_back(path);
     }
+    if (!dicom.empty())
+        images = std::move(dicom);
+    else if (wrapped)
+        images.clear(); // of other folders
     if (images.empty() && volumes) images = std::move(others);
-    if (images.empty()) images = std::move(bare);
+    if (images.empty() && !wrapped) images = std::move(bare);
     if (images.empty())
         return Status(ErrorCode::FILE_NOT_FOUND, "folder " + folder + " has no images");
     std::sort(images.begin(), images.end(), naturalLess);
-    for (std::string& name : images)
-        name = (fs::path(folder) / name).string();
     return images;
 }
 

@@ -3,6 +3,7 @@
 #include "../ReadVoxels.h"
 #include "RawName.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,25 +23,23 @@ Result<Source> readPyramid(const std::string& path);
 /// The voxels of one file that OpenImageIO opens: the first subimage where that has depth, else all
 /// subimages as slices; row 0 of an image is j = 0. Integers keep their values. Four channels R, G,
 /// B, A make RGBA voxels with straight alpha as stored; R, G, B their luminance (Rec. 709);
-/// anything else its first channel.
-Result<Source> readImage(const std::string& path, const Progress& progress);
+/// anything else its first channel, or the one that is asked for.
+Result<Source> readImage(const std::string& path, std::optional<int> channel,
+                         const Progress& progress);
 
-/// The voxels of a stack of 2D images, one slice each, in this order; DICOM files in that of
-/// readDicom().
+/// The array of a NumPy file (.npy), of z,y,x or time,z,y,x, read as it is asked for: the last
+/// dimension is x where the order is C's, the first where it is Fortran's. NOT_SUPPORTED for
+/// numbers that no voxels are of.
+Result<Source> readNumpy(const std::string& path, const Progress& progress);
+
+/// The voxels of a stack of 2D images, one slice each, in this order.
 Result<Source> readStack(const std::vector<std::string>& paths, const Progress& progress);
 
-/// True where a file starts as DICOM does.
-bool isDicomFile(const std::string& path);
-/// True where a file is one DICOM slice, and another of its series lies in its folder.
-bool isSliceOfSeries(const std::string& path);
-/// One DICOM file with any number of frames, or one per slice, sorted along the patient (or by
-/// instance number). Data values with slope and intercept (HU for a CT), in the narrowest type that
-/// holds them; spacing in mm. NOT_SUPPORTED for what io/DicomHeader.h leaves out.
-Result<Source> readDicom(const std::vector<std::string>& paths, const Progress& progress);
-
-/// The images of a folder in natural order ("slice2" before "slice10"): the files of the extensions
-/// that OpenImageIO knows, or, where there are none, those without an extension. Hidden files do
-/// not count. `volumes`: where there are no images, the files of plugins (see io/PluginFile.h).
+/// The images of a folder in natural order ("slice2" before "slice10"): DICOM files, where there
+/// are any; else those of the extensions that OpenImageIO knows, or, where there are none, those
+/// without an extension. Hidden files do not count. Folders within are looked into for DICOM files
+/// where a folder has no files but those of the standard's own (DICOMDIR). `volumes`: where there
+/// are no images, the files of plugins (see io/PluginFile.h).
 Result<std::vector<std::string>> listFolder(const std::string& folder, bool volumes = false);
 
 /// True where a name holds "%d", "%03d" or "###".

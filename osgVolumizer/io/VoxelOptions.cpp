@@ -93,13 +93,25 @@ bool setSeries(VoxelOptions& o, const std::string& text)
     return text == "on" || text == "off";
 }
 
+// What no quotation marks can be put around could not be written again.
+bool isWritable(const std::string& text)
+{
+    return !text.empty() &&
+           (text.find('"') == std::string::npos || text.find('\'') == std::string::npos);
+}
+
 bool setDataset(VoxelOptions& o, const std::string& text)
 {
-    // What no quotation marks can be put around could not be written again.
-    const bool writable =
-        text.find('"') == std::string::npos || text.find('\'') == std::string::npos;
-    if (text.empty() || !writable) return false;
+    if (!isWritable(text)) return false;
     o.dataset = text;
+    return true;
+}
+
+bool setDimensions(VoxelOptions& o, const std::string& text)
+{
+    const std::vector<std::string_view> names = core::splitText(text, ',');
+    if (!isWritable(text) || names.size() < 2 || names.size() > 4) return false;
+    o.dimensions = text;
     return true;
 }
 
@@ -171,12 +183,19 @@ const std::vector<Row>& rows()
         {"series", "on or off", "on, off",
          "files of a folder or a pattern are volumes, one time step each, and not slices",
          setSeries},
-        {"dataset", "a path", "/path",
-         "which dataset of an HDF5 file is the volume; the largest of z,y,x or time,z,y,x",
+        {"dataset", "a name", "name",
+         "which volume of several, as osgvolumizertool list names them: a series of DICOM (number, "
+         "UID or description), a dataset of HDF5, a variable, a grid, an array of scalars; the "
+         "largest",
          setDataset},
         {"channel", "a whole number from 0", "n",
-         "which channel of an Imaris file, or setup of a BigDataViewer file; the first",
+         "which channel or component of several (setup of a BigDataViewer file); the first",
          setChannel},
+        {"dimensions", "two to four names, x,y,z,time", "x,y,z,time",
+         "which dimensions of a variable (NetCDF, Zarr) lie along x, y, z and time, by name; as "
+         "the "
+         "file says",
+         setDimensions},
         {"table", "a file name", "file",
          "lookup table, .lut or .tf, beside the volume or on OSG's data path", setTable},
         {"ramp", "centre,width or centre,width,opacity with an opacity from 0 to 1",
@@ -237,6 +256,7 @@ std::string VoxelOptions::voxelText() const
     if (series) add("series", *series ? "on" : "off");
     if (dataset) add("dataset", inQuotes(*dataset));
     if (channel) add("channel", std::to_string(*channel));
+    if (dimensions) add("dimensions", inQuotes(*dimensions));
     return text;
 }
 

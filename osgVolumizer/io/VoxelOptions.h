@@ -26,12 +26,13 @@ struct VoxelOptions
     std::optional<glm::ivec3> brick;   ///< samples, each >= 2
     std::optional<int> overlap;        ///< samples
     std::optional<core::PartialBricks> partial;
-    std::optional<bool> series;         ///< the files are time steps, not slices
-    std::optional<std::string> dataset; ///< path within a file of several
-    std::optional<int> channel;         ///< of a file of several, from 0
-    std::optional<std::string> table;   ///< file name
-    std::optional<glm::dvec3> ramp;     ///< centre and width, fractions of the range; opacity
-    std::optional<glm::dmat3> axes;     ///< directions of the voxel axes, a column each
+    std::optional<bool> series;            ///< the files are time steps, not slices
+    std::optional<std::string> dataset;    ///< path within a file of several
+    std::optional<int> channel;            ///< of a file of several, from 0
+    std::optional<std::string> dimensions; ///< names of those along x, y, z, and time
+    std::optional<std::string> table;      ///< file name
+    std::optional<glm::dvec3> ramp;        ///< centre and width, fractions of the range; opacity
+    std::optional<glm::dmat3> axes;        ///< directions of the voxel axes, a column each
     std::vector<std::pair<const AppearanceProperty*, AppearanceProperty::Values>> properties;
     std::vector<std::string> foreign; ///< names of options that are none of these
 
