@@ -1,0 +1,210 @@
+// Damaged volumes of VTK, and files that are none: refused in a sentence, and quietly.
+
+#ifdef OSGVOLUMIZER_HAVE_VTK_IMAGES
+
+#include "VtkFiles.h"
+
+#include <vtkUnsignedShortArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <osgDB/ReadFile>
+
+#include <vtkPoints.h>
+
+#include <random>
+
+namespace VtkBadImageTest {
+
+using namespace osgVolumizer;
+
+namespace {
+
+class VtkBadImage : public VtkFolderTest
+{
+protected:
+    /// A file of each coding: content, and what its name ends in.
+    std::vector<std::pair<std::string, std::string>> goodFiles() const
+    {
+        const auto set = image(5, 4, 3);
+        addArray<vtkUnsignedShortArray>(set->GetPointData(), "a", 1, std::vector<int>(60, 7));
+        addArray<vtkUnsignedShortArray>(set->GetPointData(), "b", 1, std::vector<int>(60, 8));
+        set->GetPointData()->SetActiveScalars("a");
+        std::vector<std::pair<std::string, std::string>> files;
+        const auto add = [&](const std::string& file, const char* ending) {
+            files.emplace_back(contentOf(file), ending);
+        };
+        add(writeImage("1.vti", set), ".vti");
+        add(writeImage("2.vti", set, vtkXMLWriter::Binary), ".vti");
+        add(writeImage("3.vti", set, vtkXMLWriter::Appended, vtkXMLWriter::NONE, false), ".vti");
+        add(writeImage("4.vti", set, vtkXMLWriter::Appended, vtkXMLWriter::ZLIB, false), ".vti");
+        add(writeImage("5.vti", set, vtkXMLWriter::Appended, vtkXMLWriter::LZ4), ".vti");
+        add(writeImage("6.vti", set, vtkXMLWriter::Binary, vtkXMLWriter::LZMA), ".vti");
+        const auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
+        vtkNew<vtkDoubleArray> x;
+        for (int i = 0; i < 4; ++i)
+            x->InsertNextValue(i * i);
+        grid->SetDimensions(4, 4, 4);
+        grid->SetXCoordinates(x);
+        grid->SetYCoordinates(x);
+        grid->SetZCoordinates(x);
+        addArray<vtkUnsignedShortArray>(grid->GetPointData(), "a", 1, std::vector<int>(64, 7));
+        add(writeGrid("7.vtr", grid), ".vtr");
+        std::string values, bytes;
+        for (int i = 0; i < 60; ++i) {
+            values += "7 ";
+            bytes += std::string("\0\7", 2);
+        }
+        const std::string head = "\nDATASET STRUCTURED_POINTS\nDIMENSIONS 5 4 3\nORIGIN 0 0 0\n"
+                                 "SPACING 1 1 1\nPOINT_DATA 60\nSCALARS a unsigned_short 1\n"
+                                 "LOOKUP_TABLE default\n";
+        files.emplace_back("# vtk DataFile Version 3.0\nt\nASCII" + head + values, ".vtk");
+        files.emplace_back("# vtk DataFile Version 3.0\nt\nBINARY" + head + bytes, ".vtk");
+        return files;
+    }
+
+    static constexpr double VALUE = 7.0;
+    /// Refused in a sentence, or whole.
+    void expectWholeOrRefused(const std::string& name, const std::string& content,
+                              const std::string& what)
+    {
+        const std::string file = writeBytes(name, content);
+        const auto voxels = readVoxels(file);
+        if (voxels.ok()) {
+            const std::vector<double> values = valuesOf(*(*voxels)->getSource());
+            for (const double v : values)
+                if (v != VALUE) {
+                    ADD_FAILURE() << what << " was read as " << v;
+                    break;
+                }
+            return;
+        }
+        expectSentence(voxels.status, file, what);
+    }
+    static void expectSentence(const Status& status, const std::string& file,
+                               const std::string& what)
+    {
+        EXPECT_EQ(status.text.rfind(file, 0), 0u) << what << ": " << status.text;
+        EXPECT_EQ(status.text.find('\n'), std::string::npos) << what << ": " << status.text;
+        EXPECT_GT(status.text.size(), file.size() + 10) << what;
+    }
+    static std::string with(std::string text, const std::string& from, const std::string& to)
+    {
+        const std::size_t found = text.find(from);
+        EXPECT_NE(found, std::string::npos) << from;
+        return found == std::string::npos ? text : text.replace(found, from.size(), to);
+    }
+};
+
+} // namespace
+
+TEST_F(VtkBadImage, FilesCutShort)
+{
+    testing::internal::CaptureStderr();
+    int number = 0;
+    for (const auto& [content, ending] : goodFiles()) {
+        const std::string name = "cut" + ending;
+        for (std::size_t size = 0; size < content.size(); size += size < 64 ? 7 : 23)
+            expectWholeOrRefused(name, content.substr(0, size),
+                                 std::to_string(size) + " bytes of file " + std::to_string(number));
+        // Half of the data is never enough.
+        EXPECT_FALSE(readVoxels(writeBytes(name, content.substr(0, content.size() * 2 / 3))).ok())
+            << number;
+        ASSERT_TRUE(readVoxels(writeBytes(name, content)).ok()) << number;
+        ++number;
+    }
+    EXPECT_EQ(number, 9);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(VtkBadImage, SizesThatTheFileCannotHold)
+{
+    const auto files = goodFiles();
+    const std::string& ascii = files[0].first;
+    const std::string& packed = files[3].first;
+    const std::string& grid = files[6].first;
+    const std::string& legacy = files[7].first;
+    const std::string& binary = files[8].first;
+    const std::string extent = "0 4 0 3 0 2", huge = "0 4000 0 3000 0 2000";
+    const std::pair<std::string, std::string> bad[] = {
+        {with(ascii, extent, huge), "calls for"},
+        {with(ascii, extent, "0 4 0 3 0 2147483646"), "no six numbers"},
+        {with(ascii, extent, "0 4 0 3 2 0"), "no six numbers"},
+        {with(ascii, extent, "0 4 0 3"), "no six numbers"},
+        {with(ascii, extent, "0 4 0 3 0 99999999999999999999"), "no six numbers"},
+        {with(ascii, "Piece Extent=\"" + extent, "Piece Extent=\"" + huge), "calls for"},
+        {with(packed, extent, huge), "calls for"},
+        {with(ascii, "Name=\"a\"", "NumberOfComponents=\"1000000000\" Name=\"a\""), "call for"},
+        {with(ascii, "Name=\"a\"", "NumberOfComponents=\"-1\" Name=\"a\""), "components"},
+        {with(ascii, "UInt16", "Float128"), "not known"},
+        {with(grid, "0 3 0 3 0 3", huge), "calls for"},
+        {with(ascii, "type=\"ImageData\"", "type=\"PolyData\""), "no data set"},
+        {with(legacy, "5 4 3", "5000 4000 3000"), "dimensions"},
+        {with(legacy, "5 4 3", "5 4 -3"), "DIMENSIONS"},
+        {with(legacy, "5 4 3", "5 4 4"), "is not of 80 values"},
+        {with(legacy, "DIMENSIONS 5 4 3\n", ""), ""},
+        {with(legacy, "unsigned_short 1", "unsigned_short 100000000"), "ends before"},
+        {with(legacy, "unsigned_short 1", "unsigned_short 2"), "ends before"},
+        {with(legacy, "unsigned_short 1", "quaternion 1"), "not known"},
+        {with(legacy, "POINT_DATA 60", "POINT_DATA 61"), "is not of 60 values"},
+        {with(binary, "unsigned_short 1", "double 1"), "ends before"},
+        {legacy + "FIELD f 1\nx 1000000000 1000000000 double\n", "ends before"},
+        {legacy + "LOOKUP_TABLE t 1000000000\n", "ends before"},
+        {legacy + "WEIGHTS t 1\n", "not known"},
+        {"# vtk DataFile Version 3.0\n", "ASCII nor BINARY"}};
+    testing::internal::CaptureStderr();
+    for (const auto& [content, words] : bad) {
+        const std::string file = writeBytes(content[0] == '#' ? "bad.vtk" : "bad.vti", content);
+        EXPECT_NE(refusal(file, "", ErrorCode::FILE_UNREADABLE).find(words), std::string::npos)
+            << refusal(file, "", ErrorCode::FILE_UNREADABLE);
+        const auto entries = listVolumes(file);
+        EXPECT_FALSE(entries.ok());
+        expectSentence(entries.status, file, words);
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// Bytes changed anywhere: it must not end the process, nor print; values may differ.
+TEST_F(VtkBadImage, BytesChangedAtRandom)
+{
+    std::mt19937 random(15);
+    testing::internal::CaptureStderr();
+    for (const auto& [content, ending] : goodFiles())
+        for (int i = 0; i < 60; ++i) {
+            std::string changed = content;
+            for (int k = 0; k < 1 + i % 3; ++k)
+                changed[random() % changed.size()] = static_cast<char>(random());
+            const std::string file = writeBytes("changed" + ending, changed);
+            const auto voxels = readVoxels(file);
+            if (!voxels.ok()) expectSentence(voxels.status, file, std::to_string(i));
+        }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(VtkBadImage, DataSetsThatAreNoVolumes)
+{
+    const std::string head = "# vtk DataFile Version 3.0\na\nASCII\nDATASET ";
+    const std::string grid =
+        writeBytes("grid.vtk", head + "UNSTRUCTURED_GRID\nPOINTS 1 float\n0 0 0\n");
+    const std::string faces = writeBytes("faces.vtk", head + "POLYDATA\nPOINTS 1 float\n0 0 0\n");
+    EXPECT_NE(
+        refusal(grid, "", ErrorCode::NOT_SUPPORTED).find("open the file itself, without .volume"),
+        std::string::npos);
+    EXPECT_NE(refusal(faces, "", ErrorCode::NOT_SUPPORTED).find("\"POLYDATA\""), std::string::npos);
+    osgDB::ReaderWriter::ReadResult result =
+        osgDB::Registry::instance()->readNode(grid + ".volume", nullptr);
+    EXPECT_FALSE(result.getNode());
+    EXPECT_NE(result.message().find("without .volume"), std::string::npos) << result.message();
+    vtkNew<vtkUnstructuredGrid> cells;
+    vtkNew<vtkPoints> points;
+    points->InsertNextPoint(0, 0, 0);
+    cells->SetPoints(points);
+    EXPECT_NE(refusal(write<vtkXMLUnstructuredGridWriter>("a.vtu", cells.GetPointer()), "",
+                      ErrorCode::NOT_SUPPORTED)
+                  .find("without .volume"),
+              std::string::npos);
+}
+
+} // namespace VtkBadImageTest
+
+#endif
