@@ -3,7 +3,6 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCommand.h>
 #include <vtkErrorCode.h>
-#include <vtkExecutive.h>
 #include <vtkNew.h>
 
 #include <string>
@@ -28,11 +27,10 @@ public:
         object.AddObserver(vtkCommand::ErrorEvent, _command);
         object.AddObserver(vtkCommand::WarningEvent, _command);
     }
-    /// Watches a reader, and updates it.
+    /// Updates a reader, which is watched, and so is its executive.
     template <class Reader>
     void run(Reader& reader)
     {
-        watch(*reader.GetExecutive());
         reader.Update();
         if (_error.empty() && reader.GetErrorCode() != vtkErrorCode::NoError)
             _error = vtkErrorCode::GetStringFromErrorCode(reader.GetErrorCode());

@@ -7,6 +7,8 @@
 
 #include <osgDB/FileNameUtils>
 
+#include <vtkExecutive.h>
+#include <vtkNew.h>
 #include <vtkUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
@@ -30,6 +32,7 @@ Result<GridFile> readXml(const std::string& path, int step, ErrorKeeper& errors)
 {
     vtkNew<vtkXMLUnstructuredGridReader> reader;
     errors.watch(*reader);
+    errors.watch(*reader->GetExecutive());
     reader->SetReaderErrorObserver(errors.command());
     reader->SetParserErrorObserver(errors.command());
     reader->SetFileName(path.c_str());
@@ -50,6 +53,7 @@ Result<GridFile> readLegacy(const std::string& path, ErrorKeeper& errors)
 {
     vtkNew<vtkUnstructuredGridReader> reader;
     errors.watch(*reader);
+    errors.watch(*reader->GetExecutive());
     reader->SetFileName(path.c_str());
     if (!reader->IsFileUnstructuredGrid())
         return unreadable(path, "not a VTK file with DATASET UNSTRUCTURED_GRID");

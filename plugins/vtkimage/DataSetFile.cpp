@@ -3,12 +3,15 @@
 #include "../vtk/ErrorKeeper.h"
 
 #include <vtkDataArraySelection.h>
+#include <vtkDataCompressor.h>
 #include <vtkDataSetAttributes.h>
+#include <vtkExecutive.h>
 #include <vtkImageData.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkRectilinearGridReader.h>
 #include <vtkStructuredPoints.h>
 #include <vtkStructuredPointsReader.h>
+#include <vtkXMLDataParser.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPImageDataReader.h>
 #include <vtkXMLPRectilinearGridReader.h>
@@ -34,10 +37,15 @@ DataSet readXml(const std::string& path, const ArrayInfo* array, int step, vtk::
 {
     vtkNew<Reader> reader;
     errors.watch(*reader);
+    errors.watch(*reader->GetExecutive());
     reader->SetReaderErrorObserver(errors.command());
     reader->SetParserErrorObserver(errors.command());
     reader->SetFileName(path.c_str());
     reader->UpdateInformation();
+    if (vtkXMLDataParser* parser = reader->GetXMLParser()) {
+        errors.watch(*parser);
+        if (parser->GetCompressor()) errors.watch(*parser->GetCompressor());
+    }
     select(*reader->GetPointDataArraySelection(), array);
     select(*reader->GetCellDataArraySelection(), array);
     reader->SetTimeStep(step);
@@ -50,6 +58,7 @@ DataSet readLegacy(const std::string& path, vtk::ErrorKeeper& errors)
 {
     vtkNew<Reader> reader;
     errors.watch(*reader);
+    errors.watch(*reader->GetExecutive());
     reader->SetFileName(path.c_str());
     reader->ReadAllScalarsOn();
     reader->ReadAllVectorsOn();

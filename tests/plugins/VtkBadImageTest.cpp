@@ -40,6 +40,7 @@ protected:
         add(writeImage("4.vti", set, vtkXMLWriter::Appended, vtkXMLWriter::ZLIB, false), ".vti");
         add(writeImage("5.vti", set, vtkXMLWriter::Appended, vtkXMLWriter::LZ4), ".vti");
         add(writeImage("6.vti", set, vtkXMLWriter::Binary, vtkXMLWriter::LZMA), ".vti");
+        add(writeImage("8.vti", set, vtkXMLWriter::Appended), ".vti");
         const auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
         vtkNew<vtkDoubleArray> x;
         for (int i = 0; i < 4; ++i)
@@ -113,7 +114,7 @@ TEST_F(VtkBadImage, FilesCutShort)
         ASSERT_TRUE(readVoxels(writeBytes(name, content)).ok()) << number;
         ++number;
     }
-    EXPECT_EQ(number, 9);
+    EXPECT_EQ(number, 10);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
@@ -122,9 +123,9 @@ TEST_F(VtkBadImage, SizesThatTheFileCannotHold)
     const auto files = goodFiles();
     const std::string& ascii = files[0].first;
     const std::string& packed = files[3].first;
-    const std::string& grid = files[6].first;
-    const std::string& legacy = files[7].first;
-    const std::string& binary = files[8].first;
+    const std::string& grid = files[7].first;
+    const std::string& legacy = files[8].first;
+    const std::string& binary = files[9].first;
     const std::string extent = "0 4 0 3 0 2", huge = "0 4000 0 3000 0 2000";
     const std::pair<std::string, std::string> bad[] = {
         {with(ascii, extent, huge), "calls for"},
@@ -133,8 +134,9 @@ TEST_F(VtkBadImage, SizesThatTheFileCannotHold)
         {with(ascii, extent, "0 4 0 3"), "no six numbers"},
         {with(ascii, extent, "0 4 0 3 0 99999999999999999999"), "no six numbers"},
         {with(ascii, "Piece Extent=\"" + extent, "Piece Extent=\"" + huge), "calls for"},
+        {with(packed, "vtkZLibDataCompressor", "vtkOtherCompressor"), "not known"},
         {with(packed, extent, huge), "calls for"},
-        {with(ascii, "Name=\"a\"", "NumberOfComponents=\"1000000000\" Name=\"a\""), "call for"},
+        {with(ascii, "Name=\"a\"", "NumberOfComponents=\"1000000000\" Name=\"a\""), "calls for"},
         {with(ascii, "Name=\"a\"", "NumberOfComponents=\"-1\" Name=\"a\""), "components"},
         {with(ascii, "UInt16", "Float128"), "not known"},
         {with(grid, "0 3 0 3 0 3", huge), "calls for"},
@@ -164,21 +166,104 @@ TEST_F(VtkBadImage, SizesThatTheFileCannotHold)
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-// Bytes changed anywhere: it must not end the process, nor print; values may differ.
+// Fewer numbers than the extent calls for, in files that are whole otherwise: VTK's readers would
+// leave memory as it was.
+TEST_F(VtkBadImage, ArraysOfTooFewNumbers)
+{
+    const auto files = goodFiles();
+    testing::internal::CaptureStderr();
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        if (files[i].second != ".vti") continue;
+        // A layer more, said by all or by the whole alone.
+        std::string more = files[i].first;
+        while (more.find("0 4 0 3 0 2") != std::string::npos)
+            more = with(more, "0 4 0 3 0 2", "0 4 0 3 0 3");
+        const std::string text =
+            refusal(writeBytes("more.vti", more), "", ErrorCode::FILE_UNREADABLE);
+        EXPECT_TRUE(text.find("fewer than 80 numbers") != std::string::npos ||
+                    text.find("do not add up") != std::string::npos)
+            << i << ": " << text;
+        const std::string gap =
+            with(files[i].first, "WholeExtent=\"0 4 0 3 0 2\"", "WholeExtent=\"0 4 0 3 0 3\"");
+        EXPECT_NE(refusal(writeBytes("gap.vti", gap), "", ErrorCode::FILE_UNREADABLE)
+                      .find("its pieces have 24 of 36 cells"),
+                  std::string::npos);
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// A header of three numbers and the sizes of the blocks: as many as the file says are made room
+// for.
+TEST_F(VtkBadImage, CompressedBlocksThatDoNotAddUp)
+{
+    const std::string good = goodFiles()[3].first;
+    const std::size_t start = good.find('_', good.find("<AppendedData")) + 1;
+    ASSERT_LT(start + 12, good.size());
+    const auto changed = [&](std::size_t word, std::uint32_t value) {
+        std::string bytes = good;
+        for (std::size_t i = 0; i < 4; ++i)
+            bytes[start + 4 * word + i] = static_cast<char>(value >> 8 * i);
+        return writeBytes("blocks.vti", bytes);
+    };
+    testing::internal::CaptureStderr();
+    for (const auto& [word, value] : {std::pair<std::size_t, std::uint32_t>{0, 0xfffffff0u},
+                                      {0, 0x10000000u},
+                                      {0, 0},
+                                      {1, 0xfffffff0u},
+                                      {1, 10},
+                                      {2, 0xfffffff0u}})
+        EXPECT_NE(
+            refusal(changed(word, value), "", ErrorCode::FILE_UNREADABLE).find("do not add up"),
+            std::string::npos)
+            << word << ", " << value;
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(VtkBadImage, PiecesThatAreNone)
+{
+    const auto parallel = [](const std::string& pieces) {
+        return "<?xml version=\"1.0\"?><VTKFile type=\"PImageData\" version=\"0.1\"><PImageData "
+               "WholeExtent=\"0 4 0 3 0 2\"><PPointData Scalars=\"a\"><PDataArray type=\"UInt16\" "
+               "Name=\"a\"/></PPointData>" +
+               pieces + "</PImageData></VTKFile>";
+    };
+    writeBytes("piece.vti", goodFiles()[0].first);
+    const std::pair<std::string, std::string> bad[] = {
+        {"", "0 of 24 cells"},
+        {"<Piece Extent=\"0 4 0 3 0 2\" Source=\"all.pvti\"/>", "has pieces itself"},
+        {"<Piece Extent=\"0 4 0 3 0 2\" Source=\"none.vti\"/>", "none.vti was not found"},
+        {"<Piece Extent=\"0 4 0 3 0 2\"/>", "no regular file"},
+        {"<Piece Extent=\"0 4 0 3 0 1\" Source=\"piece.vti\"/>", "12 of 24 cells"},
+        {"<Piece Extent=\"0 4 0 3 0 3\" Source=\"piece.vti\"/>", "smaller than it says"},
+        {"<Piece Extent=\"0 4\" Source=\"piece.vti\"/>", "the extent of a piece"}};
+    for (const auto& [pieces, words] : bad)
+        EXPECT_NE(refusal(writeBytes("all.pvti", parallel(pieces)), "", ErrorCode::FILE_UNREADABLE)
+                      .find(words),
+                  std::string::npos)
+            << refusal(path("all.pvti"), "", ErrorCode::FILE_UNREADABLE);
+    EXPECT_EQ(
+        valuesOf(open(writeBytes(
+            "all.pvti", parallel("<Piece Extent=\"0 4 0 3 0 2\" Source=\"piece.vti\"/>"))))[59],
+        VALUE);
+}
+
+// Bytes changed anywhere: it must not end the process; values may differ.
 TEST_F(VtkBadImage, BytesChangedAtRandom)
 {
     std::mt19937 random(15);
-    testing::internal::CaptureStderr();
+    int refused = 0;
     for (const auto& [content, ending] : goodFiles())
-        for (int i = 0; i < 60; ++i) {
+        for (int i = 0; i < 40; ++i) {
             std::string changed = content;
             for (int k = 0; k < 1 + i % 3; ++k)
                 changed[random() % changed.size()] = static_cast<char>(random());
             const std::string file = writeBytes("changed" + ending, changed);
             const auto voxels = readVoxels(file);
-            if (!voxels.ok()) expectSentence(voxels.status, file, std::to_string(i));
+            if (voxels.ok()) continue;
+            ++refused;
+            expectSentence(voxels.status, file, std::to_string(i));
         }
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_GT(refused, 40);
 }
 
 TEST_F(VtkBadImage, DataSetsThatAreNoVolumes)
