@@ -203,10 +203,14 @@ Status LegacySections::data(const std::string& name, const std::string& type,
     const std::int64_t most = 8 * _text.bytes() + 8;
     if (components < 0 || tuples < 0 || components > most || tuples > most ||
         (tuples > 0 && components > most / tuples) ||
-        !_text.skip(type, components * tuples, _binary))
+        !_text.skip(type, components * tuples, _binary)) {
+        if (!_text.noNumber().empty())
+            return damaged("\"" + _text.noNumber() + "\" stands where VTK reads a number of type " +
+                           type);
         return damaged("it has " + std::to_string(_text.bytes()) + " bytes, and ends before " +
                        std::to_string(tuples) + " times " + std::to_string(components) +
                        " values of type " + type);
+    }
     if (LegacyText::bitsOf(type) > 0 && components > 0 && _tuples >= 0)
         _head.add({decodedName(name), _cells, static_cast<int>(components)});
     return {};

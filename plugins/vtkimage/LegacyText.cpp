@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <string_view>
 
 namespace osgVolumizer {
 namespace vtkimage {
@@ -99,12 +101,15 @@ bool LegacyText::skipWords(std::int64_t count)
 {
     if (count > (left() + 1) / 2) return false; // a digit and a blank each
     for (std::int64_t i = 0; i < count; ++i) {
-        int c = _file.sgetc();
-        while (isBlank(c))
-            c = _file.snextc();
-        if (c == END) return false;
-        while (c != END && !isBlank(c))
-            c = _file.snextc();
+        const std::string text = word();
+        double value = 0.0;
+        const bool sign = text.size() > 1 && text[0] == '+';
+        if (text.empty()) return false;
+        if (core::parseNumber(std::string_view(text).substr(sign ? 1 : 0), value) &&
+            std::isfinite(value))
+            continue;
+        _noNumber = text;
+        return false;
     }
     return true;
 }

@@ -23,8 +23,10 @@ public:
     /// What is left of a line, of 1024 bytes at most; false at the end of the file.
     bool line(std::string& text);
     /// Passes over numbers, as text or (after the end of a line) in binary; false where the file
-    /// ends before.
+    /// ends before, or there is no number, as VTK reads them: "nan" and "inf" are none.
     bool skip(const std::string& type, std::int64_t count, bool binary);
+    /// The word that was no number; empty where the file ended.
+    const std::string& noNumber() const { return _noNumber; }
     /// Bits that a value of a type has; 0: not known, -1: text.
     static int bitsOf(const std::string& type);
 
@@ -36,6 +38,7 @@ private:
 
     std::filebuf _file;
     std::int64_t _bytes = 0;
+    std::string _noNumber;
 };
 
 } // namespace vtkimage

@@ -129,6 +129,21 @@ TEST_F(VtkImage, LegacyStructuredPoints)
     }
 }
 
+TEST_F(VtkImage, HolesAndInfinityAreKept)
+{
+    const auto set = image(3, 2, 2);
+    std::vector<double> values = counted(12);
+    values[3] = NAN;
+    values[4] = -INFINITY;
+    addArray<vtkFloatArray>(set->GetPointData(), "a", 1, values);
+    const Source source = open(writeImage("a.vti", set, vtkXMLWriter::Appended));
+    ASSERT_TRUE(source);
+    const std::vector<double> found = valuesOf(source);
+    EXPECT_TRUE(std::isnan(found[3]));
+    EXPECT_EQ(found[4], -INFINITY);
+    EXPECT_EQ(found[5], 5.0);
+}
+
 TEST_F(VtkImage, EverySectionOfALegacyFileIsPassedOver)
 {
     const std::string sections =
