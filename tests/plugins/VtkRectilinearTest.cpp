@@ -4,7 +4,10 @@
 
 #include "VtkFiles.h"
 
+#include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/io/Placement.h>
+
+#include <osgDB/ReadFile>
 
 #include <vtkUnsignedCharArray.h>
 
@@ -111,6 +114,32 @@ TEST_F(VtkRectilinear, EvenOnesAreImages)
     EXPECT_NEAR(middle.x, 2.0, 1e-12);
     EXPECT_NEAR(middle.y, 3.5, 1e-12);
     EXPECT_NEAR(middle.z, 0.05, 1e-7);
+}
+
+TEST_F(VtkRectilinear, PiecesOfAParallelFile)
+{
+    const Axis axes[3] = {{0, 1, 2}, {0, 1}, {0, 2}};
+    const auto set = grid(axes);
+    addArray<vtkFloatArray>(set->GetPointData(), "a", 1,
+                            Axis{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
+    writeGrid("piece.vtr", set);
+    const std::string file = writeBytes(
+        "all.pvtr",
+        "<?xml version=\"1.0\"?><VTKFile type=\"PRectilinearGrid\" version=\"0.1\">"
+        "<PRectilinearGrid WholeExtent=\"0 2 0 1 0 1\" GhostLevel=\"0\"><PPointData><PDataArray "
+        "type=\"Float32\" Name=\"a\"/></PPointData><PCoordinates><PDataArray type=\"Float64\"/>"
+        "<PDataArray type=\"Float64\"/><PDataArray type=\"Float64\"/></PCoordinates>"
+        "<Piece Extent=\"0 2 0 1 0 1\" Source=\"piece.vtr\"/></PRectilinearGrid></VTKFile>");
+    const Source source = open(file);
+    ASSERT_TRUE(source);
+    EXPECT_EQ(valuesOf(source), (Axis{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}));
+    EXPECT_EQ(io::placeOf(source->describe(), {2, 1, 1}), glm::dvec3(2, 1, 2));
+    for (const char* name : {"all.pvtr", "piece.vtr"}) {
+        const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(path(name));
+        const auto* appearance = dynamic_cast<VolumeAppearance*>(node.get());
+        ASSERT_TRUE(appearance) << name;
+        EXPECT_EQ(appearance->getVoxels()->getSize(), osg::Vec3i(3, 2, 2));
+    }
 }
 
 TEST_F(VtkRectilinear, LegacyOnes)

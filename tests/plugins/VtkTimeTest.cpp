@@ -13,6 +13,9 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <atomic>
+#include <thread>
+
 namespace VtkTimeTest {
 
 using namespace osgVolumizer;
@@ -45,6 +48,46 @@ TEST_F(VtkTime, StepsOfAnImage)
     for (const int step : {2, 0, 1})
         EXPECT_EQ(valuesOf(*source, step), std::vector<double>(12, 100.0 * step)) << step;
     EXPECT_EQ(listVolumes(path("a.vti"))->front().steps, 3);
+}
+
+TEST_F(VtkTime, NumberedFilesAreASeries)
+{
+    for (int step = 0; step < 3; ++step) {
+        const auto set = image(3, 2, 2);
+        addArray<vtkFloatArray>(set->GetPointData(), "other", 1, std::vector<double>(12, -1.0));
+        addArray<vtkFloatArray>(set->GetPointData(), "a", 1, std::vector<double>(12, step));
+        writeImage("flow" + std::to_string(step) + ".vti", set);
+    }
+    const Source source = open(path("flow%d.vti"), "series=on dataset=a");
+    ASSERT_TRUE(source);
+    ASSERT_EQ(source->stepCount(), 3);
+    for (const int step : {2, 0, 1})
+        EXPECT_EQ(valuesOf(*source, step), std::vector<double>(12, step));
+}
+
+// As the steps of a series are read.
+TEST_F(VtkTime, SeveralThreadsReadAtOnce)
+{
+    const auto set = image(20, 20, 20);
+    std::vector<double> values(8000);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = double(i);
+    addArray<vtkFloatArray>(set->GetPointData(), "a", 1, values);
+    const std::string file = writeImage("a.vti", set, vtkXMLWriter::Appended, vtkXMLWriter::ZLIB);
+    std::atomic<int> wrong{0}, right{0};
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back([&]() {
+            for (int i = 0; i < 10; ++i) {
+                const auto voxels = readVoxels(file);
+                const bool good = voxels.ok() && valuesOf(*(*voxels)->getSource()) == values;
+                ++(good ? right : wrong);
+            }
+        });
+    for (std::thread& thread : threads)
+        thread.join();
+    EXPECT_EQ(wrong, 0);
+    EXPECT_EQ(right, 40);
 }
 
 // Tetrahedra whose scalar is the number of the step.
