@@ -3,12 +3,7 @@
 #include <osgVolumizer/core/Text.h>
 
 #include <vtkBase64Utilities.h>
-#include <vtkLZ4DataCompressor.h>
-#include <vtkLZMADataCompressor.h>
-#include <vtkNew.h>
-#include <vtkSmartPointer.h>
 #include <vtkType.h>
-#include <vtkZLibDataCompressor.h>
 
 #include <algorithm>
 #include <cctype>
@@ -37,24 +32,22 @@ constexpr Compressor COMPRESSORS[] = {{"", 1},
                                       {"vtkLZ4DataCompressor", 1 << 9},
                                       {"vtkLZMADataCompressor", 1 << 14}};
 
-vtkSmartPointer<vtkDataCompressor> compressorOf(const std::string& name)
-{
-    if (name == COMPRESSORS[1].name) return vtkSmartPointer<vtkZLibDataCompressor>::New();
-    if (name == COMPRESSORS[2].name) return vtkSmartPointer<vtkLZ4DataCompressor>::New();
-    if (name == COMPRESSORS[3].name) return vtkSmartPointer<vtkLZMADataCompressor>::New();
-    return nullptr;
-}
-
 std::string textOf(vtkXMLDataElement& element, const char* name)
 {
     const char* value = element.GetAttribute(name);
     return value ? value : "";
 }
 
-Status missing(vtkXMLDataElement& array, std::int64_t count)
+// Of base64, with padding.
+std::int64_t lettersOf(std::int64_t bytes)
 {
-    return {ErrorCode::FILE_UNREADABLE, "array \"" + textOf(array, "Name") + "\" has fewer than " +
-                                            std::to_string(count) + " numbers"};
+    return (bytes + 2) / 3 * 4;
+}
+
+bool isLetter(int c)
+{
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '+' ||
+           c == '/';
 }
 
 } // namespace
@@ -81,7 +74,7 @@ XmlData::XmlData(vtkXMLDataParser& parser, std::ifstream& stream, std::int64_t f
     _bigEndian = textOf(root, "byte_order") == "BigEndian";
     if (vtkXMLDataElement* appended = root.FindNestedElementWithName("AppendedData"))
         _encoded = textOf(*appended, "encoding") != "raw";
-    parser.SetCompressor(compressorOf(textOf(root, "compressor")));
+    _packed = !textOf(root, "compressor").empty();
 }
 
 // Where its data begin; -1 where there are none.
@@ -103,57 +96,105 @@ std::int64_t XmlData::positionOf(vtkXMLDataElement& array)
     return _stream ? static_cast<std::int64_t>(_stream.tellg()) - 1 : -1;
 }
 
-// Their number, the size of each, the size of the last where that is another.
-Status XmlData::checkBlocks(vtkXMLDataElement& array, std::int64_t bytes)
+bool XmlData::isEncoded(vtkXMLDataElement& array) const
 {
-    const Status damaged(ErrorCode::FILE_UNREADABLE, "the compressed blocks of array \"" +
-                                                         textOf(array, "Name") +
-                                                         "\" do not add up");
-    const std::int64_t position = positionOf(array);
-    const std::size_t word = _wide ? 8 : 4;
-    unsigned char text[32] = {}, raw[24] = {};
-    const bool encoded = textOf(array, "format") != "appended" || _encoded;
+    return textOf(array, "format") != "appended" || _encoded;
+}
+
+bool XmlData::readWords(std::int64_t position, bool encoded, std::int64_t count,
+                        std::vector<std::uint64_t>& words)
+{
+    const std::int64_t word = _wide ? 8 : 4, bytes = count * word;
+    std::vector<unsigned char> text, raw(static_cast<std::size_t>(lettersOf(bytes)));
+    if (position < 0 || position + (encoded ? lettersOf(bytes) : bytes) > _bytes) return false;
     _stream.clear();
     _stream.seekg(position);
-    _stream.read(reinterpret_cast<char*>(encoded ? text : raw),
-                 static_cast<std::streamsize>(encoded ? 4 * word : 3 * word));
-    if (position < 0 || !_stream) return damaged;
-    if (encoded && vtkBase64Utilities::DecodeSafely(text, 4 * word, raw, 3 * word) != 3 * word)
-        return damaged;
-    std::uint64_t head[3] = {};
-    for (std::size_t i = 0; i < 3 * word; ++i) {
-        const std::size_t at = i % word, shift = 8 * (_bigEndian ? word - 1 - at : at);
-        head[i / word] |= static_cast<std::uint64_t>(raw[i]) << shift;
+    if (encoded) text.resize(raw.size());
+    _stream.read(reinterpret_cast<char*>(encoded ? text.data() : raw.data()),
+                 static_cast<std::streamsize>(encoded ? lettersOf(bytes) : bytes));
+    if (!_stream) return false;
+    if (encoded && vtkBase64Utilities::DecodeSafely(text.data(), text.size(), raw.data(),
+                                                    raw.size()) < std::size_t(bytes))
+        return false;
+    words.assign(static_cast<std::size_t>(count), 0);
+    for (std::int64_t i = 0; i < bytes; ++i) {
+        const std::int64_t at = i % word, shift = 8 * (_bigEndian ? word - 1 - at : at);
+        words[std::size_t(i / word)] |= static_cast<std::uint64_t>(raw[std::size_t(i)]) << shift;
     }
+    return true;
+}
+
+bool XmlData::isThere(std::int64_t position, bool encoded, std::int64_t bytes)
+{
+    if (bytes > _bytes || position < 0) return false;
+    if (!encoded) return position + bytes <= _bytes;
+    const std::int64_t padding = (3 - bytes % 3) % 3;
+    _stream.clear();
+    _stream.seekg(position);
+    std::streambuf& buffer = *_stream.rdbuf();
+    for (std::int64_t i = lettersOf(bytes); i > 0; --i) {
+        const int c = buffer.sbumpc();
+        if (i <= padding ? c != '=' : !isLetter(c)) return false;
+    }
+    return true;
+}
+
+// The number of blocks, the size of each, that of the last where it is another, and then how many
+// bytes each has when packed.
+bool XmlData::arePackedBlocks(std::int64_t position, bool encoded, std::int64_t bytes)
+{
+    std::vector<std::uint64_t> head;
     const auto most = static_cast<std::uint64_t>(_bytes);
-    if (head[0] < 1 || head[0] > most / word || head[1] > most << 14 || head[2] > head[1])
-        return damaged;
-    const std::uint64_t whole = head[0] - (head[2] > 0 ? 1 : 0);
-    if (whole > 0 && head[1] > (std::uint64_t(1) << 62) / whole) return damaged;
-    return head[1] * whole + head[2] < static_cast<std::uint64_t>(bytes) ? damaged : Status();
+    const std::int64_t word = _wide ? 8 : 4;
+    if (!readWords(position, encoded, 3, head)) return false;
+    const std::uint64_t blocks = head[0], size = head[1], last = head[2];
+    if (blocks < 1 || blocks > most / std::uint64_t(word) || size > most << 14 || last > size)
+        return false;
+    const std::uint64_t whole = blocks - (last > 0 ? 1 : 0);
+    if (whole > 0 && size > (std::uint64_t(1) << 62) / whole) return false;
+    if (size * whole + last < static_cast<std::uint64_t>(bytes)) return false;
+    const std::int64_t words = 3 + static_cast<std::int64_t>(blocks);
+    if (!readWords(position, encoded, words, head)) return false;
+    std::uint64_t packed = 0;
+    for (std::size_t i = 3; i < head.size(); ++i) {
+        if (head[i] > most - packed) return false;
+        packed += head[i];
+    }
+    const std::int64_t headBytes = words * word;
+    return isThere(position, encoded, headBytes) &&
+           isThere(position + (encoded ? lettersOf(headBytes) : headBytes), encoded,
+                   static_cast<std::int64_t>(packed));
+}
+
+bool XmlData::areBytes(std::int64_t position, bool encoded, std::int64_t bytes)
+{
+    std::vector<std::uint64_t> head;
+    const std::int64_t word = _wide ? 8 : 4;
+    if (!readWords(position, encoded, 1, head)) return false;
+    return head[0] >= static_cast<std::uint64_t>(bytes) &&
+           head[0] <= static_cast<std::uint64_t>(_bytes) &&
+           isThere(position, encoded, word + static_cast<std::int64_t>(head[0]));
 }
 
 Status XmlData::check(vtkXMLDataElement& array, const XmlType& type, std::int64_t count)
 {
-    const std::string format = textOf(array, "format");
-    const bool ascii = format == "ascii";
+    const bool ascii = textOf(array, "format") == "ascii";
     const std::int64_t words = type.bytes > 0 || ascii ? count : (count + 7) / 8;
     if (words < 1 || !type.isNumber()) return {};
-    if (_parser.GetCompressor() && !ascii)
-        if (Status status = checkBlocks(array, words * std::max(type.bytes, 1)); !status.ok())
-            return status;
-    _stream.clear();
-    double number = 0.0; // of any type
-    const auto last = static_cast<vtkTypeUInt64>(words - 1);
-    std::int64_t offset = 0;
-    if (format != "appended")
-        return _parser.ReadInlineData(&array, ascii, &number, last, 1, type.word) == 1
-                   ? Status()
-                   : missing(array, count);
-    return core::parseInteger(textOf(array, "offset"), offset) && offset >= 0 && offset <= _bytes &&
-                   _parser.ReadAppendedData(offset, &number, last, 1, type.word) == 1
-               ? Status()
-               : missing(array, count);
+    bool good = false;
+    if (ascii) {
+        double number = 0.0; // of any type
+        _stream.clear();
+        good =
+            _parser.ReadInlineData(&array, 1, &number, vtkTypeUInt64(words - 1), 1, type.word) == 1;
+    } else {
+        const std::int64_t bytes = words * std::max(type.bytes, 1), position = positionOf(array);
+        good = _packed ? arePackedBlocks(position, isEncoded(array), bytes)
+                       : areBytes(position, isEncoded(array), bytes);
+    }
+    if (good) return {};
+    return {ErrorCode::FILE_UNREADABLE, "array \"" + textOf(array, "Name") + "\" has fewer than " +
+                                            std::to_string(count) + " numbers, or is damaged"};
 }
 
 } // namespace vtkimage

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace osgVolumizer {
 namespace vtkimage {
@@ -30,25 +31,32 @@ std::optional<XmlType> xmlTypeOf(const std::string& name);
 std::int64_t densityOf(const std::string& compressor);
 
 /// The data in a file that was parsed. VTK's readers leave memory as it was where there are fewer
-/// numbers than they expect, and make room for as many compressed blocks as the file says.
+/// numbers than they expect, or letters that are none of base64, and make room for as many
+/// compressed blocks as the file says.
 class XmlData
 {
 public:
     /// `parser` has parsed `stream`, and outlives this.
     XmlData(vtkXMLDataParser& parser, std::ifstream& stream, std::int64_t fileBytes);
 
-    /// Whether an array has `count` numbers at least: that the last is there, and that all blocks
-    /// are said to be. FILE_UNREADABLE, in words that do not name the file.
+    /// Whether an array has `count` numbers at least; nothing is unpacked. FILE_UNREADABLE, in
+    /// words that do not name the file.
     Status check(vtkXMLDataElement& array, const XmlType& type, std::int64_t count);
 
 private:
-    Status checkBlocks(vtkXMLDataElement& array, std::int64_t bytes);
     std::int64_t positionOf(vtkXMLDataElement& array);
+    bool isEncoded(vtkXMLDataElement& array) const;
+    /// The numbers in front of data.
+    bool readWords(std::int64_t position, bool encoded, std::int64_t count,
+                   std::vector<std::uint64_t>& words);
+    bool isThere(std::int64_t position, bool encoded, std::int64_t bytes);
+    bool arePackedBlocks(std::int64_t position, bool encoded, std::int64_t bytes);
+    bool areBytes(std::int64_t position, bool encoded, std::int64_t bytes);
 
     vtkXMLDataParser& _parser;
     std::ifstream& _stream;
     std::int64_t _bytes;
-    bool _wide = false, _bigEndian = false, _encoded = true;
+    bool _packed = false, _wide = false, _bigEndian = false, _encoded = true;
 };
 
 } // namespace vtkimage

@@ -6,8 +6,6 @@
 #include <osgVolumizer/core/RegularFile.h>
 #include <osgVolumizer/core/Text.h>
 
-#include <vtkDataCompressor.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -235,10 +233,7 @@ Result<FileHead> XmlFile::read(const std::string& path)
     if (densityOf(compressor) == 0)
         return Status(broken("it is compressed by \"" + compressor + "\", which is not known"));
     _most = _bytes * densityOf(compressor);
-    if (!parallel) {
-        _data.emplace(*parser, stream, _bytes);
-        if (parser->GetCompressor()) errors.watch(*parser->GetCompressor());
-    }
+    if (!parallel) _data.emplace(*parser, stream, _bytes);
     if (Status status = readDataSet(*primary, path); !status.ok()) return status;
     if (!errors.error().empty()) return Status(broken(errors.error()));
     return _head;
