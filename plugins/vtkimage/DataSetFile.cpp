@@ -7,6 +7,7 @@
 #include <vtkDataSetAttributes.h>
 #include <vtkExecutive.h>
 #include <vtkImageData.h>
+#include <vtkObjectFactory.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkRectilinearGridReader.h>
 #include <vtkStructuredPoints.h>
@@ -32,20 +33,47 @@ void select(vtkDataArraySelection& selection, const ArrayInfo* array)
     selection.EnableArray(array->name.c_str());
 }
 
+/// Watches what unpacks the data, whose errors the readers take for the end of them.
+class WatchedParser : public vtkXMLDataParser
+{
+public:
+    static WatchedParser* New() { VTK_STANDARD_NEW_BODY(WatchedParser); }
+    void SetCompressor(vtkDataCompressor* compressor) override
+    {
+        if (compressor) errors->watch(*compressor);
+        vtkXMLDataParser::SetCompressor(compressor);
+    }
+    vtk::ErrorKeeper* errors = nullptr;
+};
+
+template <class Reader>
+class WatchedReader : public Reader
+{
+public:
+    static WatchedReader* New() { VTK_STANDARD_NEW_BODY(WatchedReader); }
+    vtk::ErrorKeeper* errors = nullptr;
+
+protected:
+    void CreateXMLParser() override
+    {
+        if (this->XMLParser) this->DestroyXMLParser();
+        WatchedParser* parser = WatchedParser::New();
+        parser->errors = errors;
+        errors->watch(*parser);
+        this->XMLParser = parser;
+    }
+};
+
 template <class Reader>
 DataSet readXml(const std::string& path, const ArrayInfo* array, int step, vtk::ErrorKeeper& errors)
 {
-    vtkNew<Reader> reader;
+    vtkNew<WatchedReader<Reader>> reader;
+    reader->errors = &errors;
     errors.watch(*reader);
     errors.watch(*reader->GetExecutive());
     reader->SetReaderErrorObserver(errors.command());
-    reader->SetParserErrorObserver(errors.command());
     reader->SetFileName(path.c_str());
     reader->UpdateInformation();
-    if (vtkXMLDataParser* parser = reader->GetXMLParser()) {
-        errors.watch(*parser);
-        if (parser->GetCompressor()) errors.watch(*parser->GetCompressor());
-    }
     select(*reader->GetPointDataArraySelection(), array);
     select(*reader->GetCellDataArraySelection(), array);
     reader->SetTimeStep(step);

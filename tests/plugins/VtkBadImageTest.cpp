@@ -247,6 +247,37 @@ TEST_F(VtkBadImage, CompressedBlocksThatDoNotAddUp)
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
+// VTK's readers take a block that cannot be unpacked for the end of the data.
+TEST_F(VtkBadImage, BlocksThatCannotBeUnpacked)
+{
+    const auto set = image(20, 20, 20);
+    std::vector<int> values(8000);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = int(i * i % 65536);
+    addArray<vtkUnsignedShortArray>(set->GetPointData(), "a", 1, values);
+    testing::internal::CaptureStderr();
+    for (const int compressor : {vtkXMLWriter::ZLIB, vtkXMLWriter::LZ4, vtkXMLWriter::LZMA}) {
+        vtkNew<vtkXMLImageDataWriter> writer;
+        writer->SetFileName(path("a.vti").c_str());
+        writer->SetInputData(set);
+        writer->SetDataModeToAppended();
+        writer->EncodeAppendedDataOff();
+        writer->SetCompressorType(compressor);
+        writer->SetBlockSize(2000); // eight
+        ASSERT_TRUE(writer->Write());
+        const Source whole = open(path("a.vti"));
+        ASSERT_TRUE(whole);
+        EXPECT_EQ(valuesOf(whole), std::vector<double>(values.begin(), values.end()));
+        std::string bytes = contentOf(path("a.vti"));
+        const std::size_t start = bytes.find('_', bytes.find("<AppendedData")) + 1;
+        const std::size_t middle = start + (bytes.rfind("</AppendedData>") - start) / 2;
+        for (std::size_t i = 0; i < 400; ++i)
+            bytes[middle + i] = '\xff';
+        refusal(writeBytes("bad.vti", bytes), "", ErrorCode::FILE_UNREADABLE);
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST_F(VtkBadImage, PiecesThatAreNone)
 {
     const auto parallel = [](const std::string& pieces) {
@@ -275,11 +306,12 @@ TEST_F(VtkBadImage, PiecesThatAreNone)
         VALUE);
 }
 
-// Bytes changed anywhere: it must not end the process; values may differ.
+// Bytes changed anywhere: it must not end the process, nor print; values may differ.
 TEST_F(VtkBadImage, BytesChangedAtRandom)
 {
     std::mt19937 random(15);
     int refused = 0;
+    testing::internal::CaptureStderr();
     for (const auto& [content, ending] : goodFiles())
         for (int i = 0; i < 40; ++i) {
             std::string changed = content;
@@ -291,6 +323,7 @@ TEST_F(VtkBadImage, BytesChangedAtRandom)
             ++refused;
             expectSentence(voxels.status, file, std::to_string(i));
         }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_GT(refused, 40);
 }
 
