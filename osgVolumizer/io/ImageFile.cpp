@@ -1,7 +1,5 @@
 #include "ImageFile.h"
 
-#include "TiffDepth.h"
-
 #include "../core/RegularFile.h"
 #include "../core/Text.h"
 #include "../core/voxels/VoxelData.h"
@@ -81,9 +79,9 @@ bool voxelTypeOf(const OIIO::TypeDesc& type, VoxelType& voxel)
 }
 
 /// By how many bits OpenImageIO has widened the integers of a TIFF, by repeating them.
-int widenedBits(const OIIO::ImageSpec& spec)
+int widenedBits(const OIIO::ImageSpec& spec, const TiffTags& tags)
 {
-    const int bits = spec.get_int_attribute("oiio:BitsPerSample"),
+    const int bits = static_cast<int>(std::min<std::uint64_t>(tags.bitsPerSample, 64)),
               wide = static_cast<int>(spec.format.size()) * 8;
     const bool integers =
         spec.format == OIIO::TypeDesc::UINT8 || spec.format == OIIO::TypeDesc::UINT16;
@@ -117,7 +115,9 @@ void toVoxels(const void* pixels, const PixelFormat& format, std::size_t count, 
         for (std::size_t i = 0; i < row.size(); ++i)
             row[i] = brightness(from + (done + i) * step, channels) * scale;
         if (format.shift)
-            std::for_each(row.begin(), row.end(), [](double& v) { v = std::floor(v); });
+            std::for_each(row.begin(), row.end(), [&](double& v) {
+                v = format.inverted ? 1.0 - std::floor(v) : std::floor(v);
+            });
         core::convertVoxels(row.data(), VoxelType::FLOAT64,
                             static_cast<unsigned char*>(destination) + done * voxel, format.type,
                             row.size());
@@ -144,10 +144,15 @@ Status ImageFile::open(const std::string& path)
                     " bytes, cannot be opened as an image: " + oneLine(OIIO::geterror())};
     if (std::string(_input->format_name()) == "tiff") {
         std::ifstream file(path, std::ios::binary);
-        const std::uint64_t depth = tiffImageDepth(file);
-        if (depth != static_cast<std::uint64_t>(std::max(size().z, 1)))
+        _tags = TiffTags::read(file);
+        // Where the standard says one bit for want of a number, it says eight.
+        if (_tags.bitsPerSample == 1 && spec().get_int_attribute("oiio:BitsPerSample") != 1)
             return {ErrorCode::NOT_SUPPORTED,
-                    path + " has ImageDepth " + std::to_string(depth) +
+                    path +
+                        " has pixels of one bit, and does not say so; one that does can be read"};
+        if (_tags.imageDepth != static_cast<std::uint64_t>(std::max(size().z, 1)))
+            return {ErrorCode::NOT_SUPPORTED,
+                    path + " has ImageDepth " + std::to_string(_tags.imageDepth) +
                         "; a 3D TIFF with a page for each slice can be read"};
     }
     const glm::ivec3 s = size();
@@ -189,7 +194,8 @@ Result<PixelFormat> ImageFile::pixelFormat(std::optional<int> channel) const
                                                     spec().format.c_str() +
                                                     ", which is no voxel type");
     format.channel = channel;
-    if (std::string(_input->format_name()) == "tiff") format.shift = widenedBits(spec());
+    if (std::string(_input->format_name()) == "tiff") format.shift = widenedBits(spec(), _tags);
+    format.inverted = format.shift == 7 && _tags.minIsWhite;
     if (channel && *channel >= spec().nchannels)
         return Status(ErrorCode::INDEX_OUT_OF_RANGE,
                       _path + " has no channel " + std::to_string(*channel) + ", but " +
@@ -276,8 +282,8 @@ Status ImageFile::checkBytes(std::int64_t voxelBytes) const
 {
     const std::int64_t found = fileBytes(_path);
     const bool plain = spec().get_string_attribute("compression") == "none";
-    const int bits = spec().get_int_attribute("oiio:BitsPerSample");
-    if (bits > 0 && bits < 8) voxelBytes = voxelBytes * bits / 8;
+    if (_tags.bitsPerSample < 8)
+        voxelBytes = voxelBytes * static_cast<std::int64_t>(_tags.bitsPerSample) / 8;
     if (voxelBytes / (plain ? 1 : HIGHEST_COMPRESSION) <= found) return {};
     return {ErrorCode::FILE_UNREADABLE,
             _path + " has " + std::to_string(found) + " bytes, where its voxels need " +

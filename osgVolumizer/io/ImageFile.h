@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../VoxelSource.h"
+#include "TiffTags.h"
 
 #include <OpenImageIO/imageio.h>
 
@@ -18,14 +19,15 @@ struct PixelFormat
     std::optional<int> channel;                  ///< that was asked for
     int first = 0;                               ///< of those that are read
     int channels = 1;                            ///< so many are read
-    int shift = 0; ///< bits that OpenImageIO has widened integers by: 1 bit to 8, 12 to 16
+    int shift = 0;         ///< bits that OpenImageIO has widened integers by: 1 bit to 8, 12 to 16
+    bool inverted = false; ///< by OpenImageIO: masks whose 0 is white
     VoxelType type = VoxelType::UINT8;
     int components = 1;
 
     /// True where pixels are stored as they are read.
     bool direct() const
     {
-        return channels == components && shift == 0 && read != OIIO::TypeDesc::INT64 &&
+        return channels == components && shift == 0 && !inverted && read != OIIO::TypeDesc::INT64 &&
                read != OIIO::TypeDesc::UINT64;
     }
     bool operator==(const PixelFormat& o) const
@@ -73,6 +75,7 @@ private:
     std::string _path;
     std::unique_ptr<OIIO::ImageInput> _input;
     int _subimage = 0;
+    TiffTags _tags;
 };
 
 } // namespace io

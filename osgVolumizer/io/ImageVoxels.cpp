@@ -167,7 +167,7 @@ Result<Source> readImage(const std::string& path, std::optional<int> channel,
 {
     ImageFile file;
     Status status = file.open(path);
-    if (status.code == ErrorCode::NOT_SUPPORTED) return readVolumetricTiff(path, channel);
+    if (status.code == ErrorCode::NOT_SUPPORTED) return readByLibtiff(path, channel);
     if (!status.ok()) return status;
     // Without a channel: a first look, how many there are.
     Result<PixelFormat> format = file.pixelFormat();

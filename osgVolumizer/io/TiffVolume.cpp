@@ -161,12 +161,54 @@ bool fits(const glm::ivec3& size, VoxelType type, int samples, const std::string
            core::voxelBytes(size, type, samples) / HIGHEST_COMPRESSION <= bytes;
 }
 
+// The page that `file` is at, a byte for each bit.
+Status readBits(const TiffFile& file, const glm::ivec3& size, unsigned char* to)
+{
+    const tmsize_t row = TIFFScanlineSize(file.get());
+    const int strip = static_cast<int>(std::min<std::uint32_t>(
+        file.number(TIFFTAG_ROWSPERSTRIP, ~0u), static_cast<std::uint32_t>(size.y)));
+    const bool fits = int(file.number(TIFFTAG_IMAGEWIDTH, 0)) == size.x &&
+                      int(file.number(TIFFTAG_IMAGELENGTH, 0)) == size.y;
+    if (!fits || TIFFIsTiled(file.get()) || row != (size.x + 7) / 8 || strip < 1)
+        return file.refuse("its pages of one bit are of several sizes or channels, or in tiles");
+    std::vector<unsigned char> bits(std::size_t(row) * std::size_t(strip));
+    std::uint32_t index = 0;
+    for (int y = 0; y < size.y; y += strip, ++index) {
+        const int rows = std::min(strip, size.y - y);
+        if (TIFFReadEncodedStrip(file.get(), index, bits.data(), row * rows) != row * rows)
+            return file.refuse();
+        for (int r = 0; r < rows; ++r)
+            for (int x = 0; x < size.x; ++x)
+                *to++ =
+                    bits[std::size_t(row) * std::size_t(r) + std::size_t(x / 8)] >> (7 - x % 8) & 1;
+    }
+    return {};
+}
+
+Result<Source> readBilevel(const TiffFile& file, const std::string& path)
+{
+    VoxelSource::Description d;
+    d.size = {int(file.number(TIFFTAG_IMAGEWIDTH, 0)), int(file.number(TIFFTAG_IMAGELENGTH, 0)),
+              int(TIFFNumberOfDirectories(file.get()))};
+    if (!fits(d.size, d.type, 1, path)) return file.refuse("its sizes are wrong");
+    MemorySource source = new MemoryVoxelSource;
+    if (Status status = source->allocate(d); !status.ok())
+        return Status(status.code, path + ": " + status.text);
+    auto* to = static_cast<unsigned char*>(source->data());
+    for (int z = 0; z < d.size.z; ++z, to += std::int64_t(d.size.x) * d.size.y) {
+        if (!TIFFSetDirectory(file.get(), static_cast<std::uint16_t>(z))) return file.refuse();
+        if (Status status = readBits(file, d.size, to); !status.ok()) return status;
+    }
+    return Source(source);
+}
+
 } // namespace
 
-Result<Source> readVolumetricTiff(const std::string& path, std::optional<int> channel)
+Result<Source> readByLibtiff(const std::string& path, std::optional<int> channel)
 {
     const TiffFile file(path);
     if (!file.get()) return file.refuse();
+    if (file.shortNumber(TIFFTAG_BITSPERSAMPLE) == 1) return readBilevel(file, path);
     const auto number = [&file](std::uint32_t tag, std::uint32_t otherwise) {
         return static_cast<int>(std::min(file.number(tag, otherwise), 0x7fffffffu));
     };
@@ -251,11 +293,13 @@ Result<Source> readSinglePage(const std::string& path, const PageLayout& layout,
 namespace osgVolumizer {
 namespace io {
 
-Result<Source> readVolumetricTiff(const std::string& path, std::optional<int>)
+Result<Source> readByLibtiff(const std::string& path, std::optional<int>)
 {
-    return Status(ErrorCode::NOT_SUPPORTED,
-                  path + " is a TIFF with ImageDepth, which this build cannot read: build with "
-                         "libtiff (Debian: libtiff-dev)");
+    return Status(
+        ErrorCode::NOT_SUPPORTED,
+        path +
+            " is a TIFF with ImageDepth, or of one bit, which this build cannot read: build with "
+            "libtiff (Debian: libtiff-dev)");
 }
 
 Result<Source> readSinglePage(const std::string& path, const PageLayout&, int)

@@ -49,6 +49,27 @@ protected:
     }
 };
 
+void addNumber(std::string& bytes, std::uint32_t value, int size)
+{
+    for (int i = 0; i < size; ++i)
+        bytes += static_cast<char>(value >> (8 * i) & 255);
+}
+
+// A TIFF up to its pixels: tag, type and value of each entry.
+std::string tiffOf(const std::uint32_t (*entries)[3], std::uint32_t count)
+{
+    std::string bytes("II*\0\10\0\0\0", 8);
+    addNumber(bytes, count, 2);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        addNumber(bytes, entries[i][0], 2);
+        addNumber(bytes, entries[i][1], 2);
+        addNumber(bytes, 1, 4);
+        addNumber(bytes, entries[i][2], 4);
+    }
+    addNumber(bytes, 0, 4);
+    return bytes;
+}
+
 osg::ref_ptr<Voxels> read(const std::string& file, const std::string& options = {})
 {
     const osg::ref_ptr<osgDB::Options> said = new osgDB::Options(options);
@@ -159,24 +180,31 @@ TEST_F(MicroscopeTiff, OmePlanesMayLieInAnyPage)
     EXPECT_EQ((Pages{0, 1, 2}), pagesOf(*read(part)));
 }
 
+// Whichever of them is white.
 TEST_F(MicroscopeTiff, BitsAreZeroAndOne)
 {
-    OIIO::ImageSpec spec(20, 16, 1, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:BitsPerSample", 1);
-    spec.attribute("compression", "none");
-    std::vector<std::uint8_t> pixels(20 * 16);
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        pixels[i] = i % 3 ? 255 : 0;
-    const auto out = OIIO::ImageOutput::create(path("bits.tif"));
-    ASSERT_TRUE(out->open(path("bits.tif"), spec));
-    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, pixels.data()));
-    out->close();
-    ASSERT_LT(std::filesystem::file_size(path("bits.tif")), pixels.size() + 150u);
-    const osg::ref_ptr<Voxels> voxels = read(path("bits.tif"));
-    const Voxels::Block block = voxels->getBrick(0);
-    ASSERT_EQ(pixels.size(), block.bytes);
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        ASSERT_EQ(i % 3 ? 1 : 0, block.data[i]) << i;
+    for (const std::uint32_t photometric : {0, 1})
+        for (const bool told : {true, false}) { // one bit is what is meant where nothing is said
+            constexpr std::uint32_t COUNT = 8, DATA = 8 + 2 + 12 * COUNT + 4;
+            const std::uint32_t entries[COUNT][3] = {
+                {256, 4, 20}, {257, 4, 16},          {told ? 258u : 255u, 3, 1},
+                {259, 3, 1},  {262, 3, photometric}, {273, 4, DATA},
+                {278, 4, 16}, {279, 4, 48}};
+            std::string bytes = tiffOf(entries, COUNT);
+            for (int y = 0; y < 16; ++y)
+                bytes += {'\x55', '\x55', '\x50'};
+            const std::string file = writeBytes("bits.tif", bytes);
+#ifndef OSGVOLUMIZER_HAVE_TIFF
+            if (!told) {
+                EXPECT_EQ(ErrorCode::NOT_SUPPORTED, readVoxels(file).status.code);
+                continue;
+            }
+#endif
+            const Voxels::Block block = read(file)->getBrick(0);
+            ASSERT_EQ(320u, block.bytes);
+            for (std::size_t i = 0; i < 320; ++i)
+                ASSERT_EQ(i % 2, block.data[i]) << i << " " << photometric << " " << told;
+        }
 }
 
 TEST_F(MicroscopeTiff, FilesLargerThanTheirShareOfMemoryAreReadAsTheyAreAskedFor)
@@ -294,27 +322,20 @@ TEST_F(MicroscopeTiff, AllSlicesBehindOneDirectory)
     const std::string text = "ImageJ=1.53t\nimages=12\nchannels=2\nslices=3\nframes=2\nspacing=2\n";
     constexpr std::uint32_t COUNT = 10, TEXT = 8 + 2 + 12 * COUNT + 4;
     const auto length = static_cast<std::uint32_t>(text.size() + 1), data = TEXT + length;
-    const std::uint32_t entries[COUNT][4] = {{256, 4, 1, WIDTH},  {257, 4, 1, HEIGHT},
-                                             {258, 3, 1, 16},     {259, 3, 1, 1},
-                                             {262, 3, 1, 1},      {270, 2, length, TEXT},
-                                             {273, 4, 1, data},   {277, 3, 1, 1},
-                                             {278, 4, 1, HEIGHT}, {279, 4, 1, WIDTH * HEIGHT * 2}};
-    std::string bytes("II*\0\10\0\0\0\12\0", 10);
-    const auto add = [&bytes](std::uint32_t value, int size) {
-        for (int i = 0; i < size; ++i)
-            bytes += static_cast<char>(value >> (8 * i) & 255);
-    };
-    for (const auto& e : entries) {
-        add(e[0], 2);
-        add(e[1], 2);
-        add(e[2], 4);
-        add(e[3], 4);
-    }
-    add(0, 4);
+    const std::uint32_t entries[COUNT][3] = {{256, 4, WIDTH},  {257, 4, HEIGHT},
+                                             {258, 3, 16},     {259, 3, 1},
+                                             {262, 3, 1},      {270, 2, TEXT},
+                                             {273, 4, data},   {277, 3, 1},
+                                             {278, 4, HEIGHT}, {279, 4, WIDTH * HEIGHT * 2}};
+    std::string bytes = tiffOf(entries, COUNT);
+    // The text is as long as it is.
+    std::string count;
+    addNumber(count, length, 4);
+    bytes.replace(8 + 2 + 12 * 5 + 4, 4, count);
     bytes += text + '\0';
     for (std::uint32_t page = 0; page < 12; ++page)
         for (int i = 0; i < WIDTH * HEIGHT; ++i)
-            add(100 * page, 2);
+            addNumber(bytes, 100 * page, 2);
     const std::string file = writeBytes("a.tif", bytes);
     const osg::ref_ptr<Voxels> voxels = read(file, "channel=1");
     ASSERT_EQ(osg::Vec3i(WIDTH, HEIGHT, 3), voxels->getSize());
