@@ -5,7 +5,7 @@
 #include "Info.h"
 #include "ProgressLine.h"
 
-#include <osgVolumizer/ReadVoxels.h>
+#include <osgVolumizer/ReadVolume.h>
 #include <osgVolumizer/Version.h>
 #include <osgVolumizer/WritePyramid.h>
 #include <osgVolumizer/WriteVoxels.h>
@@ -52,8 +52,8 @@ const char* const help =
       show. IN is any volume (a raw file as above). Samples of a coarser level are means, or the most frequent
       value, for labels. What was interrupted is gone on with by the same command.
 
-Options: -O "OPTION=VALUE ..." (of the loader, as for osgviewer: -O "dataset=2 channel=1"; README.md has a
-table of all of them), --quiet (no progress), --help, --version.
+Options: -O "OPTION=VALUE ..." (of the loader, as for osgviewer: -O "dataset=2 channel=1"), --quiet (no
+progress), --help, --version.
 Exit status: 0 done, 1 a file cannot be read or written, 2 the command line is wrong.
 )";
 
@@ -211,7 +211,10 @@ int main(int argc, char** argv)
         }
         arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i));
         if (option == "--help") {
-            std::cout << help;
+            std::cout << help << "\nOptions of the loader:\n";
+            for (const VolumeOption& row : volumeOptions())
+                std::cout << "  " << row.name << '=' << row.values << "\n      " << row.help
+                          << '\n';
             return DONE;
         } else if (option == "--version") {
             std::cout << "osgvolumizertool " << getVersion() << '\n';
