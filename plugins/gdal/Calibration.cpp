@@ -80,7 +80,8 @@ Calibration calibrationOf(const GDALMDArray& array, const std::string& driver)
     if (known && !(driver == "Zarr" && fill == 0.0)) addMissing(array, {fill}, c);
     addMissing(array, numberAttribute(array, "_FillValue"), c);
     addMissing(array, numberAttribute(array, "missing_value"), c);
-    const bool floats = typeOf(array) >= VoxelType::HALF;
+    const GDALDataType type = array.GetDataType().GetNumericDataType();
+    const bool floats = type == GDT_Float32 || type == GDT_Float64;
     if (driver == "netCDF" && floats && c.missing.empty()) addMissing(array, {NETCDF_FILL}, c);
     c.asFloat = typeOf(array) == VoxelType::FLOAT32;
     if (c.asFloat)

@@ -12,7 +12,7 @@ namespace gdal {
 
 namespace {
 
-constexpr std::int64_t MOST = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t MOST_CLASSIC_BYTES = std::numeric_limits<std::int64_t>::max();
 
 struct ClassicVariable
 {
@@ -133,7 +133,7 @@ void checkHeader(Header& header)
             ++recordVariables;
         }
     for (const ClassicVariable& v : variables) {
-        if (v.begin < 0 || v.begin > MOST / 4) Header::fail();
+        if (v.begin < 0 || v.begin > MOST_CLASSIC_BYTES / 4) Header::fail();
         const std::int64_t step = recordVariables == 1 ? v.bytes : ofRecord;
         if (v.records && (streamed || records == 0)) continue;
         if (v.records && double(records) * double(step) > double(header.size())) Header::fail();
