@@ -13,14 +13,11 @@
 #include <gtest/gtest.h>
 
 #include <openvdb/openvdb.h>
-#include <openvdb/points/PointDataGrid.h>
-#include <openvdb/tools/LevelSetSphere.h>
-#include <openvdb/tools/LevelSetUtil.h>
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <thread>
 
 namespace OpenVdbTest {
@@ -94,6 +91,29 @@ protected:
             to.setValue(at, typename Grid::ValueType(scale * value(at)));
         return grid;
     }
+    /// A sphere of radius 6 about (1, 2, 3) of voxels of 0.25: its distance, up to three voxels
+    /// from it, or a fog that gets as dense as it can within those.
+    static openvdb::FloatGrid::Ptr sphere(openvdb::GridClass kind)
+    {
+        constexpr float BAND = 0.75f;
+        const bool levelSet = kind == openvdb::GRID_LEVEL_SET;
+        auto grid = openvdb::FloatGrid::create(levelSet ? BAND : 0.0f);
+        grid->setGridClass(kind);
+        grid->setTransform(openvdb::math::Transform::createLinearTransform(0.25));
+        auto to = grid->getAccessor();
+        for (const Coord& at : openvdb::CoordBBox({-24, -20, -16}, {32, 36, 40})) {
+            const openvdb::Vec3d p = grid->indexToWorld(at) - openvdb::Vec3d(1, 2, 3);
+            const float distance = float(p.length() - 6.0);
+            if (levelSet && std::fabs(distance) < BAND)
+                to.setValueOn(at, distance);
+            else if (levelSet && distance < 0.0f)
+                to.setValueOff(at, -BAND);
+            else if (!levelSet && distance < 0.0f)
+                to.setValueOn(at, std::min(-distance / BAND, 1.0f));
+        }
+        grid->pruneGrid();
+        return grid;
+    }
     /// The samples of a region as the tree has them, asked one after another.
     static std::size_t wrongIn(const VoxelSource& source, const openvdb::FloatGrid& grid,
                                const Box3i& region)
@@ -121,10 +141,7 @@ double peakMemory()
 
 TEST_F(OpenVdb, LevelSetAndFogOfASphere)
 {
-    const auto levelSet =
-        openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(6.0f, {1, 2, 3}, 0.25f, 3.0f);
-    const auto fog = levelSet->deepCopy();
-    openvdb::tools::sdfToFogVolume(*fog);
+    const auto levelSet = sphere(openvdb::GRID_LEVEL_SET), fog = sphere(openvdb::GRID_FOG_VOLUME);
     levelSet->setName("distance");
     fog->setName("density");
     write("sphere.vdb", {levelSet, fog});
@@ -405,8 +422,7 @@ TEST_F(OpenVdb, CoarseLevelsAreMeansOfFloatsAndMiddlesOfIntegers)
 
 TEST_F(OpenVdb, WhatIsNoVolumeSaysSo)
 {
-    const auto points = openvdb::points::PointDataGrid::create();
-    points->tree().touchLeaf({0, 0, 0})->setValuesOn();
+    const auto points = openvdb::GridBase::createGrid("Tree_ptdataidx32_5_4_3");
     write("points.vdb", {points}, "particles");
     const auto refused = read("points.vdb");
     EXPECT_EQ(refused.status.code, ErrorCode::NOT_SUPPORTED) << refused.status.text;
