@@ -18,7 +18,8 @@ namespace gdal {
 
 namespace {
 
-constexpr double METRES_PER_DEGREE = 111195.0; // of a sphere with a radius of 6371 km
+constexpr double METRES_PER_DEGREE = 111195.0;  // of a sphere with a radius of 6371 km
+constexpr double MOST_PER_PIECE = 4294967296.0; // bytes
 constexpr std::int64_t MOST_INTERPOLATED = std::int64_t(1) << 36; // bytes
 
 bool isDegrees(const std::string& unit)
@@ -106,6 +107,13 @@ Status checkSizes(const Variable& variable)
             return {ErrorCode::TOO_LARGE, variable.path + " has " + std::to_string(d->GetSize()) +
                                               " samples along " + oneLine(d->GetName()) +
                                               ", more than 2147483647"};
+    double piece = double(variable.array->GetDataType().GetSize());
+    for (const GUInt64 length : variable.array->GetBlockSize())
+        piece *= double(std::max<GUInt64>(length, 1));
+    if (piece > MOST_PER_PIECE)
+        return {ErrorCode::TOO_LARGE, variable.path + " is stored in pieces of " +
+                                          core::formatNumber(piece) +
+                                          " bytes, each of which has to be in memory"};
     return {};
 }
 

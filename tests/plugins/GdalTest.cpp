@@ -461,6 +461,25 @@ TEST_F(Gdal, NoiseIsRefused)
     EXPECT_EQ(folder.status.text.rfind(path("folder.zarr"), 0), 0u) << folder.status.text;
 }
 
+// Headers that ask for more memory than there is.
+TEST_F(Gdal, LargeClaimsAreRefused)
+{
+    const auto writeHeader = [this](const std::string& name, const std::string& shape,
+                                    const std::string& pieces) {
+        fs::create_directories(path(name));
+        writeBytes(name + "/.zarray",
+                   "{\"shape\": [" + shape + "], \"chunks\": [" + pieces +
+                       "], \"dtype\": \"<f4\", \"order\": \"C\", \"compressor\": null, "
+                       "\"filters\": null, \"fill_value\": 3, \"zarr_format\": 2}");
+        return read(name).status;
+    };
+    EXPECT_EQ(writeHeader("fine.zarr", "100,100,100", "50,50,50").code, ErrorCode::NONE);
+    const Status pieces = writeHeader("pieces.zarr", "100000,100000,100000", "4000,4000,4000");
+    EXPECT_EQ(pieces.code, ErrorCode::TOO_LARGE) << pieces.text;
+    EXPECT_EQ(pieces.text.rfind(path("pieces.zarr"), 0), 0u) << pieces.text;
+    EXPECT_EQ(writeHeader("long.zarr", "3000000000,10,10", "10,10,10").code, ErrorCode::TOO_LARGE);
+}
+
 TEST_F(Gdal, ThreadsReadSideBySide)
 {
     {
