@@ -23,6 +23,11 @@ CHART_PACKAGES="libgtest-dev libgl1-mesa-dri openscenegraph xvfb xauth python3"
 VTK_PACKAGES="libvtk9-dev"
 # The reader of HDF5 files; all goes without it.
 HDF5_PACKAGES="libhdf5-dev"
+# The reader of NetCDF and Zarr; all goes without it.
+GDAL_PACKAGES="libgdal-dev"
+# The reader of OpenVDB grids; all goes without it.
+#   libboost-dev    OpenVDB's headers include some of it, and its package does not say so
+OPENVDB_PACKAGES="libopenvdb-dev libboost-dev"
 
 install_missing() {
     command -v dpkg-query >/dev/null || {
