@@ -29,7 +29,7 @@ Status noPixels(const std::string& path, const Elements& elements, const gdcm::F
     if (uid.empty()) uid = Elements(file.GetHeader()).text(Tag(0x0002, 0x0002));
     const char* name = nullptr;
     if (uid == "1.2.840.10008.1.3.10") name = "a directory of DICOM files: open its folder";
-    std::string text = path + " has no pixels";
+    std::string text = path + " has no image";
     if (name) return {ErrorCode::NOT_SUPPORTED, text + ": it is " + name};
     gdcm::UIDs uids;
     if (!uid.empty() && uids.SetFromUID(uid.c_str()) && uids.GetName())
@@ -119,9 +119,10 @@ Result<DicomFile> readHeader(const std::string& path)
 {
     gdcm::Reader reader;
     reader.SetFileName(path.c_str());
-    if (!reader.ReadUpToTag(Tag(0x7fdf, 0xffff)))
+    if (!reader.ReadUpToTag(Tag(0x7fe0, 0x0010), {Tag(0x7fe0, 0x0010)}))
         return Status(ErrorCode::FILE_UNREADABLE,
-                      path + " cannot be read as DICOM: it is cut short, or something else");
+                      path + " cannot be read as DICOM: its elements are cut short, or of a form "
+                             "that GDCM does not read");
     const gdcm::DataSet& set = reader.GetFile().GetDataSet();
     const Elements elements(set);
     DicomFile file;
@@ -130,6 +131,8 @@ Result<DicomFile> readHeader(const std::string& path)
     if (const char* name = syntax.GetString()) file.syntax = name;
     if (!elements.has(Tag(0x0028, 0x0010)) && !elements.has(Tag(0x0028, 0x0011)))
         return noPixels(path, elements, reader.GetFile());
+    file.pixelsAt = static_cast<std::int64_t>(reader.GetStreamCurrentPosition());
+    file.isFloat = elements.has(Tag(0x7fe0, 0x0008)) || elements.has(Tag(0x7fe0, 0x0009));
     readWords(elements, file);
     Status status = readLayout(elements, file);
     if (status.ok()) status = readLut(elements, file);
@@ -155,19 +158,6 @@ Result<DicomFile> readDicomHeader(const std::string& path)
         return readHeader(path);
     } catch (const std::exception& e) {
         return Status(ErrorCode::FILE_UNREADABLE, path + " cannot be read as DICOM: " + e.what());
-    }
-}
-
-std::string readDicomSeries(const std::string& path)
-{
-    if (!core::requireRegularFile(path).ok()) return {};
-    try {
-        gdcm::Reader reader;
-        reader.SetFileName(path.c_str());
-        if (!reader.CanRead() || !reader.ReadUpToTag(Tag(0x0020, 0x000e))) return {};
-        return Elements(reader.GetFile().GetDataSet()).text(Tag(0x0020, 0x000e));
-    } catch (const std::exception&) {
-        return {};
     }
 }
 

@@ -35,6 +35,7 @@ struct DicomFrame
 /// What the header of a DICOM file says.
 struct DicomFile
 {
+    std::int64_t pixelsAt = 0; ///< byte of the file where uncompressed pixels begin
     std::string path, series, description, modality, syntax;
     double seriesNumber = 0.0;
     int columns = 0, rows = 0, samples = 1;
@@ -55,8 +56,6 @@ struct DicomFile
 /// Reads a file up to its pixels. Refuses, with a text that begins with the path, what is no DICOM
 /// file (FILE_UNREADABLE) and what has no pixels (NOT_SUPPORTED).
 Result<DicomFile> readDicomHeader(const std::string& path);
-/// SeriesInstanceUID alone; empty where there is none.
-std::string readDicomSeries(const std::string& path);
 
 /// The frames of a file with the header `set`: parts of readDicomHeader().
 std::vector<DicomFrame> dicomFramesOf(const gdcm::DataSet& set, int count, const DicomFile& file);

@@ -1,9 +1,11 @@
 #include "DicomPixels.h"
 
+#include "RunLengths.h"
+
 #include <osgVolumizer/io/Luminance.h>
 
-#include <gdcmImageApplyLookupTable.h>
-#include <gdcmImageReader.h>
+#include <gdcmPixmapReader.h>
+#include <gdcmSequenceOfFragments.h>
 #include <gdcmUIDs.h>
 
 #include <algorithm>
@@ -35,20 +37,26 @@ bool isPlain(const gdcm::TransferSyntax& syntax)
            syntax != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
 }
 
+// Of all pixels as they are stored without compression. Sizes are 16 bits each, frames 20.
+std::int64_t neededBytes(const DicomFile& file)
+{
+    const std::int64_t pixels =
+        std::int64_t(file.columns) * file.rows * std::int64_t(file.frames.size());
+    const std::int64_t bits = pixels * file.samples * file.allocated;
+    return ((file.photometric == "YBR_FULL_422" ? bits / 3 * 2 : bits) + 7) / 8;
+}
+
 // Before anything is decoded.
 Status checkSize(const DicomFile& file, bool plain)
 {
     std::error_code failed;
-    const auto found = static_cast<std::int64_t>(std::filesystem::file_size(file.path, failed));
-    const double pixels = double(file.columns) * file.rows * double(file.frames.size());
-    double needed = std::ceil(pixels * file.samples * file.allocated / 8.0);
-    if (file.photometric == "YBR_FULL_422") needed = std::ceil(needed * 2.0 / 3.0);
-    if (!plain) needed = std::floor(needed / double(HIGHEST_FACTOR));
-    if (!failed && needed <= double(found)) return {};
-    return {ErrorCode::FILE_UNREADABLE, file.path + " has " + std::to_string(found) +
-                                            " bytes, where its pixels need " +
-                                            (plain ? "" : "even compressed ") +
-                                            std::to_string(static_cast<std::int64_t>(needed))};
+    const auto all = static_cast<std::int64_t>(std::filesystem::file_size(file.path, failed));
+    const std::int64_t found = plain && !file.isFloat ? all - file.pixelsAt : all;
+    const std::int64_t needed = neededBytes(file) / (plain ? 1 : HIGHEST_FACTOR);
+    if (!failed && needed <= found) return {};
+    return {ErrorCode::FILE_UNREADABLE,
+            file.path + " has " + std::to_string(found) + " bytes of pixels, which need " +
+                (plain ? "" : "even compressed ") + std::to_string(needed)};
 }
 
 Status undecoded(const DicomFile& file, const gdcm::File& read, bool whole)
@@ -81,6 +89,25 @@ bool takeFloats(const gdcm::DataSet& set, const DicomFile& file, bool plain,
     return false;
 }
 
+// One fragment for each frame.
+bool decodeRle(const gdcm::Bitmap& image, const DicomFile& file, std::vector<char>& bytes)
+{
+    const gdcm::SequenceOfFragments* parts = image.GetDataElement().GetSequenceOfFragments();
+    const int bytesPerSample = file.allocated / 8;
+    const std::size_t pixels = std::size_t(file.columns) * std::size_t(file.rows);
+    const std::size_t frameBytes = pixels * std::size_t(file.samples * bytesPerSample);
+    if (!parts || parts->GetNumberOfFragments() != file.frames.size() ||
+        bytes.size() < frameBytes * file.frames.size())
+        return false;
+    for (std::size_t i = 0; i < file.frames.size(); ++i) {
+        const gdcm::ByteValue* part = parts->GetFragment(static_cast<unsigned>(i)).GetByteValue();
+        if (!part || !decodeRunLengths(part->GetPointer(), part->GetLength(), file.samples,
+                                       bytesPerSample, pixels, bytes.data() + i * frameBytes))
+            return false;
+    }
+    return true;
+}
+
 } // namespace
 
 Status DicomPixels::open(const DicomFile& file)
@@ -88,20 +115,14 @@ Status DicomPixels::open(const DicomFile& file)
     const gdcm::TransferSyntax syntax(gdcm::TransferSyntax::GetTSType(file.syntax.c_str()));
     const bool plain = isPlain(syntax);
     if (Status status = checkSize(file, plain); !status.ok()) return status;
-    gdcm::ImageReader reader;
+    // No reader of images with their places, which asserts that some elements are there.
+    gdcm::PixmapReader reader;
     reader.SetFileName(file.path.c_str());
     if (!reader.Read()) {
         _float = takeFloats(reader.GetFile().GetDataSet(), file, plain, _bytes, _allocated);
         return _float ? Status() : undecoded(file, reader.GetFile(), true);
     }
-    const gdcm::Image* image = &reader.GetImage();
-    gdcm::ImageApplyLookupTable palette;
-    if (image->GetPhotometricInterpretation() == gdcm::PhotometricInterpretation::PALETTE_COLOR) {
-        palette.SetInput(*image);
-        if (!palette.Apply())
-            return {ErrorCode::NOT_SUPPORTED, file.path + " has a palette that cannot be applied"};
-        image = &palette.GetOutput();
-    }
+    const gdcm::Bitmap* image = &reader.GetPixmap();
     const gdcm::PixelFormat& format = image->GetPixelFormat();
     _allocated = format.GetBitsAllocated();
     _storedBits = format.GetBitsStored();
@@ -122,7 +143,26 @@ Status DicomPixels::open(const DicomFile& file)
         (_allocated != 1 && image->GetBufferLength() < needed))
         return {ErrorCode::FILE_UNREADABLE, file.path + " has fewer pixels than its header says"};
     _bytes.resize(std::max<std::size_t>(image->GetBufferLength(), needed));
-    if (!image->GetBuffer(_bytes.data())) return undecoded(file, reader.GetFile(), false);
+    const bool mixed =
+        syntax == gdcm::TransferSyntax::RLELossless && _samples > 1 && _allocated > 8;
+    if (mixed) _planar = false;
+    if (!(mixed ? decodeRle(*image, file, _bytes) : image->GetBuffer(_bytes.data())))
+        return undecoded(file, reader.GetFile(), false);
+    // GDCM turns words of 16 bits round, whatever they are part of.
+    if (syntax == gdcm::TransferSyntax::ExplicitVRBigEndian && _allocated == 32)
+        for (std::size_t i = 0; i + 4 <= _bytes.size(); i += 4)
+            std::swap_ranges(&_bytes[i], &_bytes[i] + 2, &_bytes[i + 2]);
+    if (colours != gdcm::PhotometricInterpretation::PALETTE_COLOR) return {};
+    const gdcm::LookupTable& palette = image->GetLUT();
+    std::vector<char> rgb(3 * _bytes.size());
+    if (_samples != 1 || (_allocated != 8 && _allocated != 16) || !palette.Initialized() ||
+        !palette.Decode(rgb.data(), rgb.size(), _bytes.data(), _bytes.size()))
+        return {ErrorCode::NOT_SUPPORTED, file.path + " has a palette that cannot be applied"};
+    _bytes = std::move(rgb);
+    _samples = 3;
+    _storedBits = _allocated;
+    _highBit = _allocated - 1;
+    _signed = false;
     return {};
 }
 

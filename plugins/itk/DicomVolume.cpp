@@ -16,8 +16,10 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <map>
 
 namespace osgVolumizer {
@@ -218,6 +220,22 @@ void tell(const io::VolumeRequest& request, const Chosen& chosen)
     if (!chosen.like().note.empty()) notice(request.path, chosen.like().note);
 }
 
+// Whether a UID stands in the first elements of a file: much faster than to parse it.
+bool beginsWithSeries(const std::string& path, const std::string& uid)
+{
+    std::string head(std::size_t(16) << 10, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    for (std::size_t at = head.find(uid); at != std::string::npos; at = head.find(uid, at + 1)) {
+        const std::size_t end = at + uid.size();
+        if (end >= head.size() ||
+            (head[end] != '.' && !std::isdigit(static_cast<unsigned char>(head[end]))))
+            return true;
+    }
+    return false;
+}
+
 // A file of one slice that is opened by its own name, where its series is in the folder.
 void tellOfFolder(const std::string& path, const DicomFile& file)
 {
@@ -233,7 +251,7 @@ void tellOfFolder(const std::string& path, const DicomFile& file)
             io::fileKindOf(other) != io::FileKind::DICOM)
             continue;
         ++count;
-        if (readDicomSeries(other) != file.series) continue;
+        if (!beginsWithSeries(other, file.series)) continue;
         notice(path, "is one slice of a series; open its folder for all of it");
         return;
     }
