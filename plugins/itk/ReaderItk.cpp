@@ -1,15 +1,44 @@
 // DICOM and the formats of medicine for readVoxels(): see osgVolumizer/io/FormatPlugin.h.
 
 #include "DicomVolume.h"
+#include "ItkFile.h"
+#include "NumberFile.h"
 
 #include <osgVolumizer/io/FileKind.h>
 #include <osgVolumizer/io/FormatPlugin.h>
 
+#include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
+
+#include <algorithm>
 
 namespace osgVolumizer {
 namespace medical {
 namespace {
+
+bool isDicom(const io::VolumeRequest& request)
+{
+    return !request.files.empty() || io::fileKindOf(request.path) == io::FileKind::DICOM;
+}
+
+bool nameEndsIn(const std::string& path, std::initializer_list<const char*> ends)
+{
+    const std::string name = osgDB::convertToLowerCase(path);
+    return std::any_of(ends.begin(), ends.end(), [&name](const std::string& end) {
+        return name.size() > end.size() &&
+               name.compare(name.size() - end.size(), end.size(), end) == 0;
+    });
+}
+
+// By how it begins, unpacked: NIfTI and Analyze by the length of their header.
+bool isNifti(const std::string& path)
+{
+    if (nameEndsIn(path, {".img", ".img.gz", ".nii", ".nii.gz", ".nia"})) return true;
+    const std::string head = headOf(path, 4);
+    for (const char* start : {"\x5c\x01\0\0", "\0\0\x01\x5c", "\x1c\x02\0\0", "\0\0\x02\x1c"})
+        if (head == std::string(start, 4)) return true;
+    return false;
+}
 
 class ReaderItk : public io::FormatPlugin
 {
@@ -20,11 +49,15 @@ public:
 protected:
     Result<io::Source> read(const io::VolumeRequest& request) const override
     {
-        return readDicom(request);
+        if (isDicom(request)) return readDicom(request);
+        if (nameEndsIn(request.path, {".mgh", ".mgz", ".mgh.gz"})) return readMgh(request);
+        if (isNifti(request.path)) return readNifti(request);
+        return readItkFile(request);
     }
     Result<std::vector<VolumeEntry>> list(const io::VolumeRequest& request) const override
     {
-        return listDicom(request);
+        if (isDicom(request)) return listDicom(request);
+        return FormatPlugin::list(request);
     }
 };
 
