@@ -7,13 +7,15 @@
 namespace osgVolumizer {
 
 /// Writes voxels as a 3D TIFF: one page a slice, lossless compression, BigTIFF beyond 4 GB. Other
-/// formats that OpenImageIO can put several images in work too; the extension decides. Slice by
-/// slice from the source, so that memory for one slice is enough. Nothing is left behind under
-/// `fileName` unless all of it was written. The file keeps values (TIFF stores half as float32),
-/// not spacing and origin; of time steps the first.
+/// formats that OpenImageIO can put several images in work too; the extension decides. Where the
+/// plugin for it was built, NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz) and MetaImage (.mha, .mhd),
+/// which keep spacing, axes and origin as well, however skewed, in LPS and millimetres: exactly,
+/// but for NIfTI-1, which has float32 for them. Slice by slice from the source, so that memory for
+/// one slice is enough. Nothing is left behind under `fileName` unless all of it was written. The
+/// file keeps values (TIFF and these store half as float32); of time steps the first.
 ///
-/// Refused: NOT_SUPPORTED (extension, or voxel type in this format), FILE_UNREADABLE (cannot be
-/// written).
+/// Refused: NOT_SUPPORTED (extension, voxel type in this format, or a plugin that is not there),
+/// FILE_UNREADABLE (cannot be written).
 OSGVOLUMIZER_EXPORT Status writeVoxels(const VoxelSource& source, const std::string& fileName,
                                        const Progress& progress = {});
 

@@ -207,6 +207,10 @@ std::string reasonOf(const std::exception& e)
     const auto* itkError = dynamic_cast<const itk::ExceptionObject*>(&e);
     std::string text = itkError ? itkError->GetDescription() : e.what();
     std::replace(text.begin(), text.end(), '\n', ' ');
+    // "ITK ERROR: MRCImageIO(0x558cf4248820): Unrecognized header"
+    const std::size_t address = text.find("(0x"), end = text.find("): ");
+    if (address != std::string::npos && end != std::string::npos && address < end)
+        text.erase(0, end + 3);
     return text;
 }
 

@@ -3,6 +3,7 @@
 #include "DicomVolume.h"
 #include "ItkFile.h"
 #include "NumberFile.h"
+#include "WriteFile.h"
 
 #include <osgVolumizer/io/FileKind.h>
 #include <osgVolumizer/io/FormatPlugin.h>
@@ -58,6 +59,10 @@ protected:
     {
         if (isDicom(request)) return listDicom(request);
         return FormatPlugin::list(request);
+    }
+    Status write(const VoxelSource& source, const std::string& path) const override
+    {
+        return writeFile(source, path);
     }
 };
 
