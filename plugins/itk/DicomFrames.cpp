@@ -38,7 +38,8 @@ void applyOrientation(const Elements& e, DicomFrame& frame)
         !(lengths > 0.25 && lengths < 4.0))
         return;
     frame.row = glm::normalize(row);
-    frame.column = glm::normalize(column);
+    // At a right angle, but for rounding.
+    frame.column = glm::normalize(column - glm::dot(column, frame.row) * frame.row);
 }
 
 void applyPosition(const Elements& e, DicomFrame& frame)

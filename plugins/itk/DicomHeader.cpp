@@ -1,6 +1,7 @@
 #include "DicomHeader.h"
 
 #include "Elements.h"
+#include "Structure.h"
 
 #include <osgVolumizer/core/RegularFile.h>
 
@@ -52,6 +53,30 @@ Status readLut(const Elements& elements, DicomFile& file)
                 file.path + " has a modality table of a form that cannot be read"};
     file.lut.assign(data.begin(), data.begin() + static_cast<std::ptrdiff_t>(count));
     file.lutFirst = file.isSigned ? double(static_cast<std::int16_t>(head[1])) : double(head[1]);
+    return {};
+}
+
+// GDCM asserts that a table is as long as its description says.
+Status readPalette(const Elements& elements, DicomFile& file)
+{
+    if (file.photometric != "PALETTE COLOR") return {};
+    for (std::uint16_t c = 0; c < 3; ++c) {
+        const std::vector<unsigned> head = elements.words(Tag(0x0028, std::uint16_t(0x1101 + c)));
+        const std::string data = elements.raw(Tag(0x0028, std::uint16_t(0x1201 + c)));
+        const std::size_t count = head.size() < 3 || head[0] == 0 ? 65536 : head[0];
+        const std::size_t bytes = data.size() / count;
+        if (head.size() < 3 || data.size() != bytes * count || (bytes != 1 && bytes != 2) ||
+            (head[2] != 8 && head[2] != 16) || (c > 0 && count != file.palette[0].size()))
+            return {ErrorCode::NOT_SUPPORTED,
+                    file.path + " has a palette of a form that cannot be read"};
+        file.paletteFirst = head[1];
+        file.paletteBits = bytes == 1 ? 8 : static_cast<int>(head[2]);
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto low = static_cast<unsigned char>(data[i * bytes]);
+            const auto high = static_cast<unsigned char>(data[i * bytes + bytes - 1]);
+            file.palette[c].push_back(bytes == 1 ? low : low | high << 8);
+        }
+    }
     return {};
 }
 
@@ -136,6 +161,7 @@ Result<DicomFile> readHeader(const std::string& path)
     readWords(elements, file);
     Status status = readLayout(elements, file);
     if (status.ok()) status = readLut(elements, file);
+    if (status.ok()) status = readPalette(elements, file);
     if (!status.ok()) return status;
     const double frames = elements.decimal(Tag(0x0028, 0x0008)).value_or(1.0);
     if (!(frames >= 1.0 && frames <= MOST_FRAMES))
@@ -154,6 +180,7 @@ Result<DicomFile> readHeader(const std::string& path)
 Result<DicomFile> readDicomHeader(const std::string& path)
 {
     if (Status status = core::requireRegularFile(path); !status.ok()) return status;
+    if (Status status = checkStructure(path); !status.ok()) return status;
     try {
         return readHeader(path);
     } catch (const std::exception& e) {

@@ -47,6 +47,9 @@ struct DicomFile
     bool framesAreTime = false;
     std::vector<double> lut; ///< modality LUT: calibrated values from `lutFirst` on
     double lutFirst = 0.0;
+    std::vector<double> palette[3]; ///< red, green, blue of each index from `paletteFirst` on
+    double paletteFirst = 0.0;
+    int paletteBits = 8;
     std::string note; ///< something that the reader should be told; or empty
     std::vector<DicomFrame> frames;
 

@@ -128,6 +128,10 @@ Status DicomPixels::open(const DicomFile& file)
     _storedBits = format.GetBitsStored();
     _highBit = format.GetHighBit();
     _signed = format.GetPixelRepresentation() == 1;
+    if (_allocated == file.allocated && plain) {
+        _storedBits = file.stored;
+        _highBit = file.highBit;
+    }
     _samples = format.GetSamplesPerPixel();
     _planar = image->GetPlanarConfiguration() == 1 && _samples > 1;
     const auto colours = image->GetPhotometricInterpretation();
@@ -146,23 +150,18 @@ Status DicomPixels::open(const DicomFile& file)
     const bool mixed =
         syntax == gdcm::TransferSyntax::RLELossless && _samples > 1 && _allocated > 8;
     if (mixed) _planar = false;
+    // GDCM takes the lowest bits for the stored ones, and so clears others.
+    const gdcm::ByteValue* raw = image->GetDataElement().GetByteValue();
+    if (plain && _highBit + 1 != _storedBits && raw && raw->GetLength() >= _bytes.size()) {
+        std::copy_n(raw->GetPointer(), _bytes.size(), _bytes.begin());
+        return {};
+    }
     if (!(mixed ? decodeRle(*image, file, _bytes) : image->GetBuffer(_bytes.data())))
         return undecoded(file, reader.GetFile(), false);
     // GDCM turns words of 16 bits round, whatever they are part of.
     if (syntax == gdcm::TransferSyntax::ExplicitVRBigEndian && _allocated == 32)
         for (std::size_t i = 0; i + 4 <= _bytes.size(); i += 4)
             std::swap_ranges(&_bytes[i], &_bytes[i] + 2, &_bytes[i + 2]);
-    if (colours != gdcm::PhotometricInterpretation::PALETTE_COLOR) return {};
-    const gdcm::LookupTable& palette = image->GetLUT();
-    std::vector<char> rgb(3 * _bytes.size());
-    if (_samples != 1 || (_allocated != 8 && _allocated != 16) || !palette.Initialized() ||
-        !palette.Decode(rgb.data(), rgb.size(), _bytes.data(), _bytes.size()))
-        return {ErrorCode::NOT_SUPPORTED, file.path + " has a palette that cannot be applied"};
-    _bytes = std::move(rgb);
-    _samples = 3;
-    _storedBits = _allocated;
-    _highBit = _allocated - 1;
-    _signed = false;
     return {};
 }
 
@@ -219,6 +218,17 @@ Status DicomPixels::readFrame(const DicomFile& file, const DicomFrame& frame, in
     const std::size_t count = std::size_t(file.columns) * std::size_t(file.rows);
     const std::size_t first = count * std::size_t(frame.frame);
     values.resize(count);
+    if (!file.palette[0].empty()) {
+        const double end = double(file.palette[0].size()) - 1.0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto index = static_cast<std::size_t>(
+                std::clamp(stored(first + i) - file.paletteFirst, 0.0, end));
+            const double rgb[3] = {file.palette[0][index], file.palette[1][index],
+                                   file.palette[2][index]};
+            values[i] = channel >= 0 ? rgb[channel] : io::luminance(rgb, 3);
+        }
+        return {};
+    }
     if (_samples > 1) {
         for (std::size_t i = 0; i < count; ++i)
             values[i] = colour(first + i, count, channel);

@@ -55,8 +55,8 @@ bool claimOf(const DicomFile& file, const DicomFrame& frame, core::ValueRange& r
         return true;
     }
     if (file.colour()) {
-        range.expand(
-            {0.0, std::ldexp(1.0, file.photometric == "PALETTE COLOR" ? 16 : file.stored) - 1.0});
+        const int bits = file.palette[0].empty() ? file.stored : file.paletteBits;
+        range.expand({0.0, std::ldexp(1.0, bits) - 1.0});
         return true;
     }
     const double low = file.isSigned ? -std::ldexp(1.0, file.stored - 1) : 0.0;

@@ -22,12 +22,16 @@ const gdcm::ByteValue* Elements::bytes(const gdcm::Tag& tag) const
     return _set.FindDataElement(tag) ? _set.GetDataElement(tag).GetByteValue() : nullptr;
 }
 
-std::string Elements::text(const gdcm::Tag& tag) const
+std::string Elements::raw(const gdcm::Tag& tag) const
 {
     const gdcm::ByteValue* value = bytes(tag);
-    if (!value) return {};
-    std::string text(value->GetPointer() ? value->GetPointer() : "",
-                     value->GetPointer() ? std::size_t(value->GetLength()) : 0);
+    if (!value || !value->GetPointer()) return {};
+    return {value->GetPointer(), std::size_t(value->GetLength())};
+}
+
+std::string Elements::text(const gdcm::Tag& tag) const
+{
+    std::string text = raw(tag);
     const auto blank = [](char c) { return c == ' ' || c == '\0' || c == '\n' || c == '\r'; };
     while (!text.empty() && blank(text.back()))
         text.pop_back();

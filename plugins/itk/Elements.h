@@ -17,6 +17,8 @@ public:
     explicit Elements(const gdcm::DataSet& set) : _set(set) {}
 
     bool has(const gdcm::Tag& tag) const;
+    /// The bytes of its value.
+    std::string raw(const gdcm::Tag& tag) const;
     /// Without blanks at its ends.
     std::string text(const gdcm::Tag& tag) const;
     /// Of decimal text (DS, IS), between backslashes; empty unless all are finite numbers.
