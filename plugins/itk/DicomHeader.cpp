@@ -28,10 +28,7 @@ Status noPixels(const std::string& path, const Elements& elements, const gdcm::F
 {
     std::string uid = elements.text(Tag(0x0008, 0x0016));
     if (uid.empty()) uid = Elements(file.GetHeader()).text(Tag(0x0002, 0x0002));
-    const char* name = nullptr;
-    if (uid == "1.2.840.10008.1.3.10") name = "a directory of DICOM files: open its folder";
     std::string text = path + " has no image";
-    if (name) return {ErrorCode::NOT_SUPPORTED, text + ": it is " + name};
     gdcm::UIDs uids;
     if (!uid.empty() && uids.SetFromUID(uid.c_str()) && uids.GetName())
         text += std::string(": it is of the kind \"") + uids.GetName() + '"';

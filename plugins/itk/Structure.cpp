@@ -11,7 +11,8 @@ namespace medical {
 namespace {
 
 constexpr std::uint32_t UNDEFINED = 0xffffffffu, ITEM = 0xfffee000u, ITEM_END = 0xfffee00du,
-                        SEQUENCE_END = 0xfffee0ddu, PIXELS = 0x7fe00010u, SYNTAX = 0x00020010u;
+                        SEQUENCE_END = 0xfffee0ddu, PIXELS = 0x7fe00010u, KIND = 0x00020002u,
+                        SYNTAX = 0x00020010u;
 constexpr int MOST_NESTED = 64;
 
 /// How an element begins.
@@ -52,20 +53,24 @@ public:
                 break;
             }
             if (head.length > _end - _at) return CUT;
-            if (head.tag == SYNTAX && head.length <= 64) {
-                syntax.resize(head.length);
-                take(syntax.data(), head.length);
+            if ((head.tag == SYNTAX || head.tag == KIND) && head.length <= 64) {
+                std::string& uid = head.tag == SYNTAX ? syntax : _kind;
+                uid.resize(head.length);
+                take(uid.data(), head.length);
             } else {
                 seek(_at + head.length);
             }
         }
-        while (!syntax.empty() && (syntax.back() == '\0' || syntax.back() == ' '))
-            syntax.pop_back();
+        for (std::string* uid : {&syntax, &_kind})
+            while (!uid->empty() && (uid->back() == '\0' || uid->back() == ' '))
+                uid->pop_back();
         if (syntax.empty() || syntax == "1.2.840.10008.1.2.1.99") return ODD; // deflated
         _big = syntax == "1.2.840.10008.1.2.2";
         _explicit = syntax != "1.2.840.10008.1.2";
         return elements(_end, 0);
     }
+    /// Once walked: the UID of the kind of file that it says to be.
+    const std::string& kind() const { return _kind; }
 
 private:
     void seek(std::int64_t to)
@@ -118,7 +123,8 @@ private:
             ElementHead head;
             if (const Outcome outcome = readHead(head); outcome != WHOLE) return outcome;
             if (head.tag == ITEM_END) return WHOLE;
-            if (depth == 0 && head.tag == PIXELS) return WHOLE;
+            if (depth == 0 && head.tag == PIXELS)
+                return head.length == UNDEFINED && !isItemNext() ? CUT : WHOLE;
             if (depth == 0 && head.tag <= last) return ODD;
             last = head.tag;
             if (head.length == UNDEFINED) {
@@ -130,6 +136,12 @@ private:
             }
         }
         return WHOLE;
+    }
+    // Compressed pixels begin with a table of where their fragments are.
+    bool isItemNext()
+    {
+        ElementHead head;
+        return readHead(head) == WHOLE && head.tag == ITEM && head.length <= _end - _at;
     }
     // Of a sequence of undefined length.
     Outcome items(int depth)
@@ -153,6 +165,7 @@ private:
     }
 
     std::ifstream _file;
+    std::string _kind;
     std::int64_t _at = 0, _end = 0;
     bool _explicit = true, _big = false;
 };
@@ -161,8 +174,13 @@ private:
 
 Status checkStructure(const std::string& path)
 {
-    if (Walker(path).walk() != Walker::CUT) return {};
-    return {ErrorCode::FILE_UNREADABLE, path + " is cut short within its elements"};
+    Walker walker(path);
+    const Walker::Outcome outcome = walker.walk();
+    if (walker.kind() == "1.2.840.10008.1.3.10")
+        return {ErrorCode::NOT_SUPPORTED,
+                path + " has no image: it is a directory of DICOM files: open its folder"};
+    if (outcome != Walker::CUT) return {};
+    return {ErrorCode::FILE_UNREADABLE, path + " is cut short or damaged within its elements"};
 }
 
 } // namespace medical

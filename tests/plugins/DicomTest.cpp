@@ -336,7 +336,7 @@ TEST_F(Dicom, WhatHasNoImageIsToldByItsKind)
     EXPECT_NE(plan.text.find("has no image: it is of the kind \"RT Plan Storage\""),
               std::string::npos)
         << plan.text;
-    file.text(0x00080016, "UI", "1.2.840.10008.1.3.10");
+    file.text(0x00080016, "UI", "1.2.840.10008.1.3.10"); // DICOMDIR
     EXPECT_NE(statusOf().text.find("open its folder"), std::string::npos);
     // Beside slices it does not matter.
     write("plan.dcm");
