@@ -34,6 +34,9 @@ struct Storage
 {
     std::int64_t found = 0; ///< in the file, and those that it names
     bool packed = true;
+    bool isRgba = false; ///< a MetaImage that says so: it has no field for that
+    /// To LPS, of a place that ITK leaves as the file has it: factors of x, y, z.
+    glm::dvec3 turn{1.0};
 };
 
 std::int64_t sizeOf(const fs::path& path)
@@ -58,7 +61,7 @@ std::string valueOf(std::string_view line)
 // Of NRRD and MetaImage, whose headers are lines of text.
 Storage storageOfText(const std::string& path, const std::string& head)
 {
-    Storage storage{sizeOf(path), false};
+    Storage storage{sizeOf(path), false, false, glm::dvec3(1.0)};
     for (const std::string_view line : core::splitText(head, '\n')) {
         const auto is = [line](std::string_view field) {
             return line.substr(0, field.size()) == field;
@@ -68,6 +71,9 @@ Storage storageOfText(const std::string& path, const std::string& head)
         if (is("encoding:")) storage.packed = value != "raw";
         if (is("CompressedData"))
             storage.packed = value == "True" || value == "true" || value == "1";
+        if (is("space:") && (value == "left-anterior-superior" || value == "LAS"))
+            storage.turn = glm::dvec3(-1, -1, 1); // ITK turns x, where y is to be
+        if (is("Comment")) storage.isRgba = value == "RGBA";
         const bool names = is("data file:") || is("datafile:") || is("ElementDataFile");
         if (!names || value == "LOCAL" || value == "Local" || value == "local") continue;
         const fs::path folder = fs::path(path).parent_path();
@@ -96,11 +102,12 @@ itk::SmartPointer<IO> ioFor(const std::string& path, Storage& storage)
         storage = storageOfText(path, head);
         return io.GetPointer();
     }
-    storage = {sizeOf(path), false};
+    storage = {sizeOf(path), false, false, glm::dvec3(1.0)};
     if (const auto io = itk::MRCImageIO::New(); reads(*io)) return io.GetPointer();
     if (const auto io = itk::BioRadImageIO::New(); reads(*io)) return io.GetPointer();
     storage.packed = true;
     if (const auto io = itk::GiplImageIO::New(); reads(*io)) return io.GetPointer();
+    if (ITK_VERSION_MAJOR == 5 && ITK_VERSION_MINOR < 4) storage.turn = glm::dvec3(-1, -1, 1);
     if (const auto io = itk::MINCImageIO::New(); reads(*io)) return io.GetPointer();
     return nullptr;
 }
@@ -234,6 +241,10 @@ Result<io::Source> readItkFile(const io::VolumeRequest& request)
         io->ReadImageInformation();
         Result<Samples> samples = samplesOf(*io, path);
         if (!samples.ok()) return samples.status;
+        samples->colour = samples->colour || (storage.isRgba && samples->channels == 4);
+        for (glm::dvec3* v :
+             {&samples->axes[0], &samples->axes[1], &samples->axes[2], &samples->position})
+            *v *= storage.turn;
         if (Status status = checkBytes(path, storage.found, samples->bytes(), storage.packed);
             !status.ok())
             return status;

@@ -158,10 +158,9 @@ Result<Plan> planFor(const Samples& s, const io::VolumeRequest& request)
                    << std::endl;
     }
     plan.type = typeFor(s, plan);
-    plan.asItIs = plan.type == nativeType(s.number) &&
-                  numberSize(s.number) == voxelTypeSize(plan.type) &&
-                  (isInteger(s.number) || (s.slope == 1.0 && s.intercept == 0.0)) &&
-                  s.slope == 1.0 && s.intercept == 0.0 && !plan.luminance &&
+    const bool wide = s.number == Number::INT64 || s.number == Number::UINT64;
+    plan.asItIs = !wide && plan.type == nativeType(s.number) && s.slope == 1.0 &&
+                  s.intercept == 0.0 && !plan.luminance &&
                   (s.planar ? plan.components == 1 : s.channels == plan.components);
     return plan;
 }

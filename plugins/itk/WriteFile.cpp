@@ -83,7 +83,8 @@ std::string metaType(VoxelType type)
 
 std::string metaHeader(const Description& d, const std::string& data)
 {
-    return std::string("ObjectType = Image\nNDims = 3\nBinaryData = True\n") +
+    return std::string("ObjectType = Image\nNDims = 3\n") +
+           (d.components == 4 ? "Comment = RGBA\n" : "") + "BinaryData = True\n" +
            "BinaryDataByteOrderMSB = " + (isBigEndian() ? "True" : "False") +
            "\nCompressedData = False\nTransformMatrix = " + numbers(d.axes[0], " ") + ' ' +
            numbers(d.axes[1], " ") + ' ' + numbers(d.axes[2], " ") +
