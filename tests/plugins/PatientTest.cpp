@@ -182,8 +182,8 @@ TEST_F(Patient, SeriesLieOnEachOtherOnceStored)
     const std::string ct = writeAll(folder()).front();
     const auto volume = readVolume(ct);
     ASSERT_TRUE(volume.ok()) << volume.status.text;
-    ASSERT_TRUE(osgDB::writeNodeFile(**volume, path("ct.osgt")));
-    const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(path("ct.osgt"));
+    ASSERT_TRUE(osgDB::writeNodeFile(**volume, path("ct.osgb")));
+    const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(path("ct.osgb"));
     ASSERT_TRUE(scene);
     FindBox before, after;
     (*volume)->accept(before);
