@@ -47,11 +47,12 @@ public:
             const std::int64_t before = _at;
             ElementHead head;
             if (_at == _end) return CUT; // nothing behind the meta information
-            if (const Outcome outcome = readHead(head); outcome != WHOLE) return outcome;
-            if (head.tag >> 16 != 2) {
+            const Outcome outcome = readHead(head);
+            if (outcome != CUT && head.tag >> 16 != 2) { // perhaps of implicit form
                 seek(before);
                 break;
             }
+            if (outcome != WHOLE) return outcome;
             if (head.length > _end - _at) return CUT;
             if ((head.tag == SYNTAX || head.tag == KIND) && head.length <= 64) {
                 std::string& uid = head.tag == SYNTAX ? syntax : _kind;
@@ -118,15 +119,12 @@ private:
     // Up to `end`, or the end of an item, where that is of undefined length.
     Outcome elements(std::int64_t end, int depth)
     {
-        std::uint32_t last = 0;
         while (_at < end) {
             ElementHead head;
             if (const Outcome outcome = readHead(head); outcome != WHOLE) return outcome;
             if (head.tag == ITEM_END) return WHOLE;
             if (depth == 0 && head.tag == PIXELS)
                 return head.length == UNDEFINED && !isItemNext() ? CUT : WHOLE;
-            if (depth == 0 && head.tag <= last) return ODD;
-            last = head.tag;
             if (head.length == UNDEFINED) {
                 if (const Outcome outcome = items(depth); outcome != WHOLE) return outcome;
             } else if (head.length > end - _at) {

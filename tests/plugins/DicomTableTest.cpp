@@ -343,7 +343,7 @@ const Refused REFUSED[] = {
     {"reportsi_with_empty_number_tags.dcm",
      "has no image: it is of the kind \"Basic Text SR Storage\""},
     {"rtplan.dcm", "has no image: it is of the kind \"RT Plan Storage\""},
-    {"rtplan_truncated.dcm", "cannot be read as DICOM"},
+    {"rtplan_truncated.dcm", "is cut short or damaged within its elements"},
     {"rtstruct.dcm", "has no image: it is of the kind \"RT Structure Set Storage\""},
     {"test-SR.dcm", "has no image: it is of the kind \"Comprehensive SR Storage\""},
     {"waveform_ecg.dcm", "has no image: it is of the kind \"12-lead ECG Waveform Storage\""},
