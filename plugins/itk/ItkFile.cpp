@@ -223,11 +223,9 @@ std::string reasonOf(const std::exception& e)
 
 } // namespace
 
-Result<io::Source> readItkFile(const io::VolumeRequest& request)
+Result<Samples> readItkFile(const std::string& path)
 {
-    const std::string& path = request.path;
     if (Status status = core::requireRegularFile(path); !status.ok()) return status;
-    if (Status status = refuseDataset(request); !status.ok()) return status;
     static std::mutex mutex; // their errors are global
     const std::lock_guard<std::mutex> lock(mutex);
     itk::Object::SetGlobalWarningDisplay(false);
@@ -249,7 +247,7 @@ Result<io::Source> readItkFile(const io::VolumeRequest& request)
             !status.ok())
             return status;
         if (Status status = readAll(*io, *samples, path); !status.ok()) return status;
-        return sourceOf(*samples, request);
+        return samples;
     } catch (const std::exception& e) {
         return Status(ErrorCode::FILE_UNREADABLE, path + " cannot be read: " + reasonOf(e));
     }

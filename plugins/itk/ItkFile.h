@@ -7,7 +7,7 @@ namespace medical {
 
 /// A file of NRRD, MetaImage, MRC, Bio-Rad PIC, GIPL or MINC 2, read by ITK into memory. What a
 /// file of a few bytes claims is checked before anything is allocated. Texts begin with the path.
-Result<io::Source> readItkFile(const io::VolumeRequest& request);
+Result<Samples> readItkFile(const std::string& path);
 
 } // namespace medical
 } // namespace osgVolumizer

@@ -20,8 +20,8 @@ Status readNumbers(const std::string& path, std::int64_t offset, bool swapped, S
 Status checkBytes(const std::string& path, std::int64_t found, std::int64_t needed, bool packed);
 
 /// Files of NIfTI, Analyze and FreeSurfer. Texts begin with the path.
-Result<io::Source> readNifti(const io::VolumeRequest& request);
-Result<io::Source> readMgh(const io::VolumeRequest& request);
+Result<Samples> readNifti(const std::string& path);
+Result<Samples> readMgh(const std::string& path);
 
 } // namespace medical
 } // namespace osgVolumizer

@@ -69,33 +69,30 @@ void placeMgh(const std::string& head, Samples& s)
 
 } // namespace
 
-Result<io::Source> readMgh(const io::VolumeRequest& request)
+Result<Samples> readMgh(const std::string& path)
 {
-    if (Status status = refuseDataset(request); !status.ok()) return status;
-    const std::string head = headOf(request.path, MGH_HEADER);
+    const std::string head = headOf(path, MGH_HEADER);
     if (head.size() < MGH_HEADER || field<std::int32_t>(head, 0) != 1)
         return Status(ErrorCode::FILE_UNREADABLE,
-                      request.path + " does not begin as files of FreeSurfer do");
+                      path + " does not begin as files of FreeSurfer do");
     Samples samples;
     int size[4];
     for (std::size_t i = 0; i < 4; ++i) {
         size[i] = field<std::int32_t>(head, 4 + 4 * i);
         if (size[i] < 1)
-            return Status(ErrorCode::VALUE_INVALID, request.path + " has " +
-                                                        std::to_string(size[i]) +
+            return Status(ErrorCode::VALUE_INVALID, path + " has " + std::to_string(size[i]) +
                                                         " samples on axis " + std::to_string(i));
     }
     const int type = field<std::int32_t>(head, 20);
     if (!numberOf(type, samples.number))
-        return Status(ErrorCode::NOT_SUPPORTED, request.path + " has numbers of type " +
+        return Status(ErrorCode::NOT_SUPPORTED, path + " has numbers of type " +
                                                     std::to_string(type) +
                                                     ", which no voxels are of");
     samples.size = {size[0], size[1], size[2]};
     samples.steps = size[3];
     placeMgh(head, samples);
-    if (Status status = readNumbers(request.path, MGH_HEADER, true, samples); !status.ok())
-        return status;
-    return sourceOf(samples, request);
+    if (Status status = readNumbers(path, MGH_HEADER, true, samples); !status.ok()) return status;
+    return samples;
 }
 
 } // namespace medical

@@ -33,10 +33,9 @@ std::string existing(const std::string& stem, const std::vector<std::string>& en
 
 } // namespace
 
-Result<io::Source> readNifti(const io::VolumeRequest& request)
+Result<Samples> readNifti(const std::string& name)
 {
-    if (Status status = refuseDataset(request); !status.ok()) return status;
-    std::string path = request.path;
+    std::string path = name;
     if (endsIn(path, ".nia"))
         return Status(ErrorCode::NOT_SUPPORTED, path + " is NIfTI as text, which cannot be read");
     if (endsIn(path, ".img") || endsIn(path, ".img.gz"))
@@ -44,13 +43,13 @@ Result<io::Source> readNifti(const io::VolumeRequest& request)
     Result<NiftiHeader> header = NiftiHeader::parse(headOf(path, NiftiHeader::MOST_BYTES));
     if (!header.ok()) return Status(header.status.code, path + ' ' + header.status.text);
     if (header->detached)
-        path = endsIn(request.path, ".img") || endsIn(request.path, ".img.gz")
-                   ? request.path
+        path = endsIn(name, ".img") || endsIn(name, ".img.gz")
+                   ? name
                    : existing(without(path), {".img", ".img.gz"});
     if (Status status = readNumbers(path, header->offset, header->swapped, header->samples);
         !status.ok())
         return status;
-    return sourceOf(header->samples, request);
+    return header->samples;
 }
 
 } // namespace medical

@@ -7,6 +7,7 @@
 
 #include <osgVolumizer/io/FileKind.h>
 #include <osgVolumizer/io/FormatPlugin.h>
+#include <osgVolumizer/io/PluginFile.h>
 
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
@@ -41,6 +42,17 @@ bool isNifti(const std::string& path)
     return false;
 }
 
+// One that is no DICOM file, which has one volume, without a name.
+Result<Samples> samplesOf(const io::VolumeRequest& request)
+{
+    if (!request.dataset.empty())
+        return Status(ErrorCode::VALUE_INVALID, request.path +
+                                                    " has one volume, and none of the name \"" +
+                                                    request.dataset + '"');
+    if (nameEndsIn(request.path, {".mgh", ".mgz", ".mgh.gz"})) return readMgh(request.path);
+    return isNifti(request.path) ? readNifti(request.path) : readItkFile(request.path);
+}
+
 class ReaderItk : public io::FormatPlugin
 {
 public:
@@ -51,14 +63,23 @@ protected:
     Result<io::Source> read(const io::VolumeRequest& request) const override
     {
         if (isDicom(request)) return readDicom(request);
-        if (nameEndsIn(request.path, {".mgh", ".mgz", ".mgh.gz"})) return readMgh(request);
-        if (isNifti(request.path)) return readNifti(request);
-        return readItkFile(request);
+        const Result<Samples> samples = samplesOf(request);
+        if (!samples.ok()) return samples.status;
+        return sourceOf(*samples, request);
     }
     Result<std::vector<VolumeEntry>> list(const io::VolumeRequest& request) const override
     {
         if (isDicom(request)) return listDicom(request);
-        return FormatPlugin::list(request);
+        const Result<Samples> samples = samplesOf(request);
+        if (!samples.ok()) return samples.status;
+        io::VolumeRequest quiet = request;
+        if (!request.channel && !samples->colour) quiet.channel = 0;
+        const Result<io::Source> source = sourceOf(*samples, quiet);
+        if (!source.ok()) return source.status;
+        VolumeEntry entry = io::entryOf(**source, "");
+        entry.channels = samples->channels;
+        entry.chosen = true;
+        return std::vector<VolumeEntry>{entry};
     }
     Status write(const VoxelSource& source, const std::string& path) const override
     {

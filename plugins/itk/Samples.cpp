@@ -255,12 +255,5 @@ Result<io::Source> sourceOf(const Samples& s, const io::VolumeRequest& request)
     return io::Source(series.get());
 }
 
-Status refuseDataset(const io::VolumeRequest& request)
-{
-    if (request.dataset.empty()) return {};
-    return {ErrorCode::VALUE_INVALID,
-            request.path + " has one volume, and none of the name \"" + request.dataset + '"'};
-}
-
 } // namespace medical
 } // namespace osgVolumizer

@@ -54,8 +54,5 @@ struct Samples
 /// copy where that can be. The text of a failure begins with the path.
 Result<io::Source> sourceOf(const Samples& samples, const io::VolumeRequest& request);
 
-/// Refuses (VALUE_INVALID) an option dataset, for files of one volume.
-Status refuseDataset(const io::VolumeRequest& request);
-
 } // namespace medical
 } // namespace osgVolumizer

@@ -256,6 +256,12 @@ TEST_F(Itk, NiftiHasTimeStepsVectorsAndColours)
     EXPECT_TRUE(notices.has("of 2 numbers per sample")) << notices.text();
     EXPECT_EQ(valuesOf(*vector)[5], 2);
     EXPECT_EQ(valuesOf(*sourceOf(path("a.nii"), "channel=1"))[5], 8);
+    const auto listed = listVolumes(path("a.nii"));
+    ASSERT_TRUE(listed.ok()) << listed.status.text;
+    ASSERT_EQ(listed->size(), 1u);
+    EXPECT_EQ((*listed)[0].channels, 2);
+    EXPECT_EQ((*listed)[0].size, osg::Vec3i(2, 1, 3));
+    EXPECT_TRUE((*listed)[0].chosen);
     const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("channel=2");
     EXPECT_EQ(readVoxels(path("a.nii"), options).status.code, ErrorCode::INDEX_OUT_OF_RANGE);
     file.setSize({3, 4, 2, 1, 1, 1, 1, 1});
