@@ -366,8 +366,6 @@ Result<osg::ref_ptr<Voxels>> readQuietly(const std::string& path)
     return readVoxels(path);
 }
 
-} // namespace
-
 TEST(DicomTable, OpensWithTheValuesThatOthersRead)
 {
     if (!isThere()) return;
@@ -429,6 +427,8 @@ TEST(DicomTable, HasEveryFileOfThePackage)
     }
     EXPECT_EQ(files, 107);
 }
+
+} // namespace
 
 } // namespace DicomTableTest
 

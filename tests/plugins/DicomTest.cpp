@@ -92,8 +92,6 @@ glm::dvec3 placed(const VoxelSource& source, const glm::dvec3& voxel)
     return io::placeOf(source.describe(), voxel);
 }
 
-} // namespace
-
 TEST_F(Dicom, SignedValuesInEveryByteOrder)
 {
     file.setBits(16, 16, 15, true);
@@ -637,6 +635,8 @@ TEST_F(Dicom, APaletteIsApplied)
     file.words(0x00281102, "US", {3, 0, 8}); // not as long as the table is
     EXPECT_EQ(statusOf().code, ErrorCode::NOT_SUPPORTED);
 }
+
+} // namespace
 
 } // namespace DicomTest
 

@@ -119,8 +119,6 @@ void expectPlace(const VoxelSource& source, const glm::dvec3& voxel, const glm::
         << found.x << ' ' << found.y << ' ' << found.z;
 }
 
-} // namespace
-
 TEST_F(Itk, WhatIsWrittenIsReadBackToTheBit)
 {
     for (const char* name : {"a.nrrd", "a.nhdr", "a.nii", "a.nii.gz", "a.mha", "a.mhd"})
@@ -365,8 +363,6 @@ TEST_F(Itk, CutAnywhereANiftiIsRefused)
     }
 }
 
-namespace {
-
 /// As nibabel reads it; the position and steps of its affine, turned to LPS.
 struct Known
 {
@@ -397,8 +393,6 @@ const Known KNOWN[] = {
      {13, 11.5, -11.5}, {-1, -2, 3}, {-2, -3, 1}, {-3, -1, 2}},
     // clang-format on
 };
-
-} // namespace
 
 TEST(ItkTable, FilesOfNibabelAreReadAsItReadsThem)
 {
@@ -439,6 +433,8 @@ TEST(ItkTable, FilesOfNibabelAreReadAsItReadsThem)
     EXPECT_LT(glm::distance(sums.position, {20, 20, -10}), 1e-9);
     EXPECT_LT(glm::distance(sums.axes[1], {0, -2, 0}), 1e-9);
 }
+
+} // namespace
 
 } // namespace ItkTest
 

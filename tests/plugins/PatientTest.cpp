@@ -163,8 +163,6 @@ protected:
     }
 };
 
-} // namespace
-
 TEST_F(Patient, ALandmarkLiesAtOnePlaceInAllSeries)
 {
     for (const std::string& name : writeAll(folder())) {
@@ -201,6 +199,8 @@ TEST_F(Patient, AreWrittenWhereAPersonLooks)
     for (const std::string& name : names)
         EXPECT_TRUE(fs::exists(name)) << name;
 }
+
+} // namespace
 
 } // namespace PatientTest
 
