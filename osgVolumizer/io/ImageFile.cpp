@@ -1,6 +1,5 @@
 #include "ImageFile.h"
 
-#include "Luminance.h"
 #include "TiffDepth.h"
 
 #include "../core/RegularFile.h"
@@ -80,6 +79,17 @@ bool voxelTypeOf(const OIIO::TypeDesc& type, VoxelType& voxel)
     }
 }
 
+/// One number of three channels (Rec. 709), or the first of fewer.
+template <class T>
+double brightness(const T* pixel, int channels)
+{
+    const double first = static_cast<double>(pixel[0]);
+    if (channels < 3) return first;
+    // Differences, so that grey stays exactly grey.
+    return first + 0.7152 * (static_cast<double>(pixel[1]) - first) +
+           0.0722 * (static_cast<double>(pixel[2]) - first);
+}
+
 template <class T>
 void toVoxels(const void* pixels, const PixelFormat& format, std::size_t count, void* destination)
 {
@@ -92,7 +102,7 @@ void toVoxels(const void* pixels, const PixelFormat& format, std::size_t count, 
     for (std::size_t done = 0; done < count; done += row.size()) {
         row.resize(std::min(row.size(), count - done));
         for (std::size_t i = 0; i < row.size(); ++i)
-            row[i] = luminance(from + (done + i) * step, channels);
+            row[i] = brightness(from + (done + i) * step, channels);
         core::convertVoxels(row.data(), VoxelType::FLOAT64,
                             static_cast<unsigned char*>(destination) + done * voxel, format.type,
                             row.size());

@@ -2,7 +2,7 @@
 
 #include "RunLengths.h"
 
-#include <osgVolumizer/io/Luminance.h>
+#include <osgVolumizer/io/Brightness.h>
 
 #include <gdcmPixmapReader.h>
 #include <gdcmSequenceOfFragments.h>
@@ -209,7 +209,7 @@ double DicomPixels::colour(std::size_t pixel, std::size_t pixelsPerFrame, int ch
         rgb[1] = held(y - (0.114 * 1.772 * cb + 0.299 * 1.402 * cr) / 0.587);
         rgb[2] = held(y + 1.772 * cb);
     }
-    return channel >= 0 ? rgb[channel] : io::luminance(rgb, 3);
+    return channel >= 0 ? rgb[channel] : io::brightness(rgb, 3);
 }
 
 Status DicomPixels::readFrame(const DicomFile& file, const DicomFrame& frame, int channel,
@@ -225,7 +225,7 @@ Status DicomPixels::readFrame(const DicomFile& file, const DicomFrame& frame, in
                 std::clamp(stored(first + i) - file.paletteFirst, 0.0, end));
             const double rgb[3] = {file.palette[0][index], file.palette[1][index],
                                    file.palette[2][index]};
-            values[i] = channel >= 0 ? rgb[channel] : io::luminance(rgb, 3);
+            values[i] = channel >= 0 ? rgb[channel] : io::brightness(rgb, 3);
         }
         return {};
     }

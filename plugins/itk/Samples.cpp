@@ -2,7 +2,7 @@
 
 #include <osgVolumizer/VoxelSeries.h>
 #include <osgVolumizer/core/voxels/VoxelData.h>
-#include <osgVolumizer/io/Luminance.h>
+#include <osgVolumizer/io/Brightness.h>
 #include <osgVolumizer/io/Placement.h>
 
 #include <osg/Notify>
@@ -96,7 +96,7 @@ public:
     {
         if (!plan.luminance) return at<T>(voxel, plan.first + component);
         const double rgb[3] = {at<T>(voxel, 0), at<T>(voxel, 1), at<T>(voxel, 2)};
-        return io::luminance(rgb, 3);
+        return io::brightness(rgb, 3);
     }
 
 private:

@@ -5,7 +5,7 @@ namespace io {
 
 /// One number of three channels (Rec. 709), or the first of fewer.
 template <class T>
-double luminance(const T* pixel, int channels)
+double brightness(const T* pixel, int channels)
 {
     const double first = static_cast<double>(pixel[0]);
     if (channels < 3) return first;
