@@ -27,6 +27,11 @@ HDF5_PACKAGES="libhdf5-dev"
 ITK_PACKAGES="libinsighttoolkit5-dev"
 # Whose test files its tests read: nothing of Python itself is called.
 ITK_TEST_PACKAGES="python3-pydicom python3-nibabel"
+# The reader of NetCDF and Zarr; all goes without it.
+GDAL_PACKAGES="libgdal-dev"
+# The reader of OpenVDB grids; all goes without it.
+#   libboost-dev    OpenVDB's headers include some of it, and its package does not say so
+OPENVDB_PACKAGES="libopenvdb-dev libboost-dev"
 
 install_missing() {
     command -v dpkg-query >/dev/null || {

@@ -12,6 +12,8 @@
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
 
+#include <glm/matrix.hpp>
+
 #include <cfloat>
 #include <optional>
 
@@ -138,13 +140,26 @@ void setProperties(VolumeAppearance& appearance, const io::VoxelOptions& said,
 glm::dmat3 axesOf(const Voxels& voxels, const io::VoxelOptions& said)
 {
     if (said.axes) return *said.axes;
-    const int thin = thinAxis(voxels);
+    const int thin = said.axesOfFile ? -1 : thinAxis(voxels);
     if (thin < 0) return voxels.getSource()->describe().axes;
     glm::dmat3 axes(0.0);
     axes[(thin + 1) % 3].x = 1.0;
     axes[(thin + 2) % 3].z = -1.0;
     axes[thin].y = 1.0;
     return axes;
+}
+
+// Voxels whose axes are said to point elsewhere begin where the file says.
+Status keepFirstSample(Voxels& voxels, io::VoxelOptions said)
+{
+    if (!said.axes || said.origin) return {};
+    const VoxelSource::Description d = voxels.getSource()->describe();
+    const glm::dvec3 origin = glm::transpose(*said.axes) * (d.axes * d.origin);
+    if (origin == d.origin) return {};
+    Status status = voxels.setOrigin(osg::Vec3d(origin.x, origin.y, origin.z));
+    said.origin = origin;
+    voxels.setFileOptions(said.voxelText());
+    return status;
 }
 
 osg::Matrixd turn(const glm::dmat3& axes)
@@ -197,6 +212,11 @@ osg::ref_ptr<osg::Node> placed(const VolumeAppearance& appearance, const glm::dm
 
 } // namespace
 
+osg::Matrixd getPlacement(const Voxels& voxels)
+{
+    return voxels.valid() ? turn(voxels.getSource()->describe().axes) : osg::Matrixd();
+}
+
 osg::ref_ptr<LookupTable> createSuggestedTable(const Voxels& voxels)
 {
     if (!voxels.valid() || voxels.getComponents() != 1) return new LookupTable;
@@ -219,6 +239,7 @@ readVolume(const std::string& name, const osgDB::Options* options, const Progres
     osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
     appearance->setName(osgDB::getSimpleFileName(name));
     appearance->setVoxels(voxels->get());
+    if (Status status = keepFirstSample(**voxels, said); !status.ok()) return status;
     std::optional<core::Preview> preview;
     if ((*voxels)->getComponents() == 1) preview = previewOf(**voxels);
     const core::Preview* p = preview ? &*preview : nullptr;

@@ -3,6 +3,7 @@
 #include "core/RegularFile.h"
 #include "core/voxels/VoxelData.h"
 #include "io/OiioTypes.h"
+#include "io/PageLayout.h"
 #include "io/PartFile.h"
 #include "io/PluginFile.h"
 
@@ -26,6 +27,11 @@ OIIO::ImageSpec specOf(const VoxelSource::Description& d)
     OIIO::ImageSpec spec(d.size.x, d.size.y, d.components, typeDescOf(d.type));
     spec.attribute("compression", "zip");
     spec.attribute("oiio:UnassociatedAlpha", 1);
+    spec.attribute("ImageDescription", io::PageLayout::text(d));
+    // What other programs read; this library reads the text.
+    spec.attribute("XResolution", static_cast<float>(1.0 / d.spacing.x));
+    spec.attribute("YResolution", static_cast<float>(1.0 / d.spacing.y));
+    spec.attribute("ResolutionUnit", "none");
     // Offsets of a plain TIFF have 32 bits. Compression may fail to help, and pages have headers.
     if (d.sizeInBytes() > (std::int64_t(4) << 30) - (std::int64_t(256) << 20))
         spec.attribute("tiff:bigtiff", 1);

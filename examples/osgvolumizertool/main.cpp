@@ -1,10 +1,11 @@
-// osgvolumizertool: makes volume files. Each command but pyramid writes one 3D TIFF, a page a
-// slice, which OpenImageIO, ImageJ and `osgviewer file.tif.volume` read.
+// osgvolumizertool: tells what is in volume files, and makes some: 3D TIFF, a page a slice, which
+// OpenImageIO, ImageJ and `osgviewer file.tif.volume` read, or whatever writeVoxels() writes.
 
 #include "Cubes.h"
+#include "Info.h"
 #include "ProgressLine.h"
 
-#include <osgVolumizer/ReadVoxels.h>
+#include <osgVolumizer/ReadVolume.h>
 #include <osgVolumizer/Version.h>
 #include <osgVolumizer/WritePyramid.h>
 #include <osgVolumizer/WriteVoxels.h>
@@ -21,7 +22,18 @@ using namespace osgVolumizer;
 namespace {
 
 const char* const help =
-    R"(osgvolumizertool: makes volume files
+    R"(osgvolumizertool: tells what is in volume files, and makes some
+
+  osgvolumizertool info VOLUME
+      Size, type, spacing, where it lies, range of values, histogram, time steps, memory.
+
+  osgvolumizertool list VOLUME
+      The volumes in a file or folder (series of DICOM, datasets, grids): what option dataset= takes, and
+      what they are. The one that is read is marked with *.
+
+  osgvolumizertool convert VOLUME OUT
+      Any volume to a 3D TIFF, or, where ITK was found, .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd, with its
+      spacing and where it lies.
 
   osgvolumizertool mkcubes WIDTH HEIGHT DEPTH EDGE OUT.tif [--type TYPE]
       A test pattern: cubes of EDGE voxels, brightest in the middle. TYPE is int8, uint8 (the default),
@@ -40,9 +52,17 @@ const char* const help =
       show. IN is any volume (a raw file as above). Samples of a coarser level are means, or the most frequent
       value, for labels. What was interrupted is gone on with by the same command.
 
-Options: --quiet (no progress), --help, --version.
+Options: -O "OPTION=VALUE ..." (of the loader, as for osgviewer: -O "dataset=2 channel=1"), --quiet (no
+progress), --help, --version.
 Exit status: 0 done, 1 a file cannot be read or written, 2 the command line is wrong.
 )";
+
+/// What holds for all commands.
+struct Flags
+{
+    bool quiet = false;
+    osg::ref_ptr<osgDB::Options> loader = new osgDB::Options;
+};
 
 constexpr int DONE = 0, FAILED = 1, USAGE = 2;
 
@@ -53,11 +73,11 @@ int fail(int code, const std::string& message)
     return code;
 }
 
-int write(const VoxelSource& source, const std::string& fileName, bool quiet)
+int write(const VoxelSource& source, const std::string& fileName, const Flags& flags)
 {
     Status status;
     {
-        ProgressLine line("writing " + fileName, quiet);
+        ProgressLine line("writing " + fileName, flags.quiet);
         status = writeVoxels(source, fileName, std::ref(line));
     }
     if (!status.ok()) return fail(FAILED, status.text);
@@ -67,17 +87,35 @@ int write(const VoxelSource& source, const std::string& fileName, bool quiet)
     return DONE;
 }
 
-Result<osg::ref_ptr<Voxels>> read(const std::string& in, bool quiet)
+Result<osg::ref_ptr<Voxels>> read(const std::string& in, const Flags& flags)
 {
-    ProgressLine line("reading " + in, quiet);
-    return readVoxels(in, nullptr, std::ref(line));
+    ProgressLine line("reading " + in, flags.quiet);
+    return readVoxels(in, flags.loader, std::ref(line));
 }
 
-int convert(const std::string& in, const std::string& out, bool quiet)
+int info(const std::vector<std::string>& arguments, const Flags& flags)
 {
-    const Result<osg::ref_ptr<Voxels>> voxels = read(in, quiet);
+    if (arguments.size() != 1) return fail(USAGE, "info takes one VOLUME");
+    const Result<osg::ref_ptr<Voxels>> voxels = read(arguments[0], flags);
     if (!voxels.ok()) return fail(FAILED, voxels.status.text);
-    return write(*(*voxels)->getSource(), out, quiet);
+    printInfo(std::cout, **voxels);
+    return DONE;
+}
+
+int list(const std::vector<std::string>& arguments, const Flags& flags)
+{
+    if (arguments.size() != 1) return fail(USAGE, "list takes one VOLUME");
+    const Result<std::vector<VolumeEntry>> entries = listVolumes(arguments[0], flags.loader);
+    if (!entries.ok()) return fail(FAILED, entries.status.text);
+    printList(std::cout, *entries);
+    return DONE;
+}
+
+int convert(const std::string& in, const std::string& out, const Flags& flags)
+{
+    const Result<osg::ref_ptr<Voxels>> voxels = read(in, flags);
+    if (!voxels.ok()) return fail(FAILED, voxels.status.text);
+    return write(*(*voxels)->getSource(), out, flags);
 }
 
 // A file that is written over is not gone on with.
@@ -94,13 +132,14 @@ std::string originOf(const std::string& in)
     return in;
 }
 
-int makePyramid(const std::vector<std::string>& arguments, const std::string& rule, bool quiet)
+int makePyramid(const std::vector<std::string>& arguments, const std::string& rule,
+                const Flags& flags)
 {
     if (arguments.size() != 2) return fail(USAGE, "pyramid takes IN and OUT.tif");
     if (rule != "mean" && rule != "mode")
         return fail(USAGE, "option \"--levels\" is \"" + rule + "\", neither mean nor mode");
     const std::string &in = arguments[0], &out = arguments[1];
-    const Result<osg::ref_ptr<Voxels>> voxels = read(in, quiet);
+    const Result<osg::ref_ptr<Voxels>> voxels = read(in, flags);
     if (!voxels.ok()) return fail(FAILED, voxels.status.text);
     PyramidOptions options;
     options.rule = rule == "mode" ? core::LevelRule::MODE : core::LevelRule::MEAN;
@@ -108,7 +147,7 @@ int makePyramid(const std::vector<std::string>& arguments, const std::string& ru
     const VoxelSource& source = *(*voxels)->getSource();
     Status status;
     {
-        ProgressLine line("writing " + out, quiet);
+        ProgressLine line("writing " + out, flags.quiet);
         status = writePyramid(source, out, options, std::ref(line));
     }
     if (!status.ok()) return fail(FAILED, status.text);
@@ -116,7 +155,7 @@ int makePyramid(const std::vector<std::string>& arguments, const std::string& ru
     return DONE;
 }
 
-int makeCubes(const std::vector<std::string>& arguments, VoxelType type, bool quiet)
+int makeCubes(const std::vector<std::string>& arguments, VoxelType type, const Flags& flags)
 {
     if (arguments.size() != 5)
         return fail(USAGE, "mkcubes takes WIDTH HEIGHT DEPTH EDGE OUT.tif, not " +
@@ -130,22 +169,22 @@ int makeCubes(const std::vector<std::string>& arguments, VoxelType type, bool qu
     const glm::ivec3 size(static_cast<int>(numbers[0]), static_cast<int>(numbers[1]),
                           static_cast<int>(numbers[2]));
     osg::ref_ptr<Cubes> cubes = new Cubes(size, static_cast<int>(numbers[3]), type);
-    return write(*cubes, arguments[4], quiet);
+    return write(*cubes, arguments[4], flags);
 }
 
-int stackToVolume(std::vector<std::string> arguments, bool quiet)
+int stackToVolume(std::vector<std::string> arguments, const Flags& flags)
 {
     if (arguments.size() < 2) return fail(USAGE, "stack2volume takes IN... OUT.tif");
     const std::string out = arguments.back();
     arguments.pop_back();
-    if (arguments.size() == 1) return convert(arguments[0], out, quiet);
+    if (arguments.size() == 1) return convert(arguments[0], out, flags);
     Result<osg::ref_ptr<Voxels>> voxels(Status{});
     {
-        ProgressLine line("reading " + std::to_string(arguments.size()) + " slices", quiet);
-        voxels = readSlices(arguments, nullptr, std::ref(line));
+        ProgressLine line("reading " + std::to_string(arguments.size()) + " slices", flags.quiet);
+        voxels = readSlices(arguments, flags.loader, std::ref(line));
     }
     if (!voxels.ok()) return fail(FAILED, voxels.status.text);
-    return write(*(*voxels)->getSource(), out, quiet);
+    return write(*(*voxels)->getSource(), out, flags);
 }
 
 } // namespace
@@ -153,26 +192,35 @@ int stackToVolume(std::vector<std::string> arguments, bool quiet)
 int main(int argc, char** argv)
 {
     std::vector<std::string> arguments(argv + 1, argv + argc);
-    bool quiet = false;
+    Flags flags;
     std::string typeName = "uint8";
     bool typeGiven = false;
     std::string levels = "mean";
     bool levelsGiven = false;
     for (std::size_t i = 0; i < arguments.size();) {
         const std::string option = arguments[i];
+        if (option == "-O" && i + 1 < arguments.size()) {
+            flags.loader->setOptionString(arguments[i + 1]);
+            arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i),
+                            arguments.begin() + static_cast<std::ptrdiff_t>(i) + 2);
+            continue;
+        }
         if (option.compare(0, 2, "--") != 0) {
             ++i;
             continue;
         }
         arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i));
         if (option == "--help") {
-            std::cout << help;
+            std::cout << help << "\nOptions of the loader:\n";
+            for (const VolumeOption& row : volumeOptions())
+                std::cout << "  " << row.name << '=' << row.values << "\n      " << row.help
+                          << '\n';
             return DONE;
         } else if (option == "--version") {
             std::cout << "osgvolumizertool " << getVersion() << '\n';
             return DONE;
         } else if (option == "--quiet") {
-            quiet = true;
+            flags.quiet = true;
         } else if (option == "--type" && i < arguments.size()) {
             typeName = arguments[i];
             typeGiven = true;
@@ -194,16 +242,24 @@ int main(int argc, char** argv)
         return fail(USAGE, "option \"--levels\" is for pyramid only");
     const Result<VoxelType> type = voxelTypeFromName(typeName);
     if (!type.ok()) return fail(USAGE, type.status.text);
-    if (command == "pyramid") return makePyramid(arguments, levels, quiet);
-    if (command == "mkcubes") return makeCubes(arguments, *type, quiet);
+    if (command == "info") return info(arguments, flags);
+    if (command == "list") return list(arguments, flags);
+    if (command == "convert") {
+        if (arguments.size() != 2) return fail(USAGE, "convert takes VOLUME and OUT");
+        return convert(arguments[0], arguments[1], flags);
+    }
+    if (command == "pyramid") return makePyramid(arguments, levels, flags);
+    if (command == "mkcubes") return makeCubes(arguments, *type, flags);
     if (command == "raw2volume") {
         if (arguments.size() != 2)
             return fail(USAGE, "raw2volume takes FILE.WIDTH,HEIGHT,DEPTH,TYPE and OUT.tif");
         if (arguments[0].find(',') == std::string::npos)
             return fail(USAGE, "raw2volume: \"" + arguments[0] +
                                    "\" does not end in .WIDTH,HEIGHT,DEPTH,TYPE");
-        return convert(arguments[0], arguments[1], quiet);
+        return convert(arguments[0], arguments[1], flags);
     }
-    if (command == "stack2volume") return stackToVolume(arguments, quiet);
-    return fail(USAGE, "command \"" + command + "\" is none of mkcubes, raw2volume, stack2volume");
+    if (command == "stack2volume") return stackToVolume(arguments, flags);
+    return fail(USAGE, "command \"" + command +
+                           "\" is none of info, list, convert, "
+                           "mkcubes, raw2volume, stack2volume, pyramid");
 }

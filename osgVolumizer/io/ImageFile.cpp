@@ -1,6 +1,6 @@
 #include "ImageFile.h"
 
-#include "TiffDepth.h"
+#include "Brightness.h"
 
 #include "../core/RegularFile.h"
 #include "../core/Text.h"
@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -79,15 +80,15 @@ bool voxelTypeOf(const OIIO::TypeDesc& type, VoxelType& voxel)
     }
 }
 
-/// One number of three channels (Rec. 709), or the first of fewer.
-template <class T>
-double brightness(const T* pixel, int channels)
+/// By how many bits OpenImageIO has widened the integers of a TIFF, by repeating them.
+int widenedBits(const OIIO::ImageSpec& spec, const TiffTags& tags)
 {
-    const double first = static_cast<double>(pixel[0]);
-    if (channels < 3) return first;
-    // Differences, so that grey stays exactly grey.
-    return first + 0.7152 * (static_cast<double>(pixel[1]) - first) +
-           0.0722 * (static_cast<double>(pixel[2]) - first);
+    const int bits = static_cast<int>(std::min<std::uint64_t>(tags.bitsPerSample, 64)),
+              wide = static_cast<int>(spec.format.size()) * 8;
+    const bool integers =
+        spec.format == OIIO::TypeDesc::UINT8 || spec.format == OIIO::TypeDesc::UINT16;
+    const bool palette = spec.get_string_attribute("tiff:ColorSpace") == "palette";
+    return integers && !palette && bits > 0 && bits < wide ? wide - bits : 0;
 }
 
 template <class T>
@@ -99,10 +100,15 @@ void toVoxels(const void* pixels, const PixelFormat& format, std::size_t count, 
     const std::size_t step = static_cast<std::size_t>(
         format.components == 4 ? 1 : format.channels); // RGBA: every channel for itself
     const int channels = format.components == 4 ? 1 : format.channels;
+    const double scale = std::ldexp(1.0, -format.shift);
     for (std::size_t done = 0; done < count; done += row.size()) {
         row.resize(std::min(row.size(), count - done));
         for (std::size_t i = 0; i < row.size(); ++i)
-            row[i] = brightness(from + (done + i) * step, channels);
+            row[i] = brightness(from + (done + i) * step, channels) * scale;
+        if (format.shift)
+            std::for_each(row.begin(), row.end(), [&](double& v) {
+                v = format.inverted ? 1.0 - std::floor(v) : std::floor(v);
+            });
         core::convertVoxels(row.data(), VoxelType::FLOAT64,
                             static_cast<unsigned char*>(destination) + done * voxel, format.type,
                             row.size());
@@ -129,10 +135,15 @@ Status ImageFile::open(const std::string& path)
                     " bytes, cannot be opened as an image: " + oneLine(OIIO::geterror())};
     if (std::string(_input->format_name()) == "tiff") {
         std::ifstream file(path, std::ios::binary);
-        const std::uint64_t depth = tiffImageDepth(file);
-        if (depth != static_cast<std::uint64_t>(std::max(size().z, 1)))
+        _tags = TiffTags::read(file);
+        // Where the standard says one bit for want of a number, it says eight.
+        if (_tags.bitsPerSample == 1 && spec().get_int_attribute("oiio:BitsPerSample") != 1)
             return {ErrorCode::NOT_SUPPORTED,
-                    path + " has ImageDepth " + std::to_string(depth) +
+                    path +
+                        " has pixels of one bit, and does not say so; one that does can be read"};
+        if (_tags.imageDepth != static_cast<std::uint64_t>(std::max(size().z, 1)))
+            return {ErrorCode::NOT_SUPPORTED,
+                    path + " has ImageDepth " + std::to_string(_tags.imageDepth) +
                         "; a 3D TIFF with a page for each slice can be read"};
     }
     const glm::ivec3 s = size();
@@ -174,6 +185,8 @@ Result<PixelFormat> ImageFile::pixelFormat(std::optional<int> channel) const
                                                     spec().format.c_str() +
                                                     ", which is no voxel type");
     format.channel = channel;
+    if (std::string(_input->format_name()) == "tiff") format.shift = widenedBits(spec(), _tags);
+    format.inverted = format.shift == 7 && _tags.minIsWhite;
     if (channel && *channel >= spec().nchannels)
         return Status(ErrorCode::INDEX_OUT_OF_RANGE,
                       _path + " has no channel " + std::to_string(*channel) + ", but " +
@@ -190,37 +203,57 @@ int ImageFile::sliceStep() const
     return spec().tile_width > 0 ? std::max(spec().tile_depth, 1) : 1;
 }
 
-bool ImageFile::readPixels(const PixelFormat& format, int z, int end, void* destination)
+bool ImageFile::readPixels(const PixelFormat& format, const Part& p, void* destination)
 {
     const OIIO::ImageSpec& s = spec();
+    const int first = format.first, last = first + format.channels;
     const bool tiled = s.tile_width > 0;
     const bool read =
-        tiled ? _input->read_tiles(_subimage, 0, s.x, s.x + s.width, s.y, s.y + s.height, s.z + z,
-                                   s.z + end, format.first, format.first + format.channels,
-                                   format.read, destination)
-              : _input->read_scanlines(_subimage, 0, s.y, s.y + s.height, s.z + z, format.first,
-                                       format.first + format.channels, format.read, destination);
+        tiled ? _input->read_tiles(_subimage, 0, s.x, s.x + s.width, s.y + p.y0, s.y + p.y1,
+                                   s.z + p.z0, s.z + p.z1, first, last, format.read, destination)
+              : _input->read_scanlines(_subimage, 0, s.y + p.y0, s.y + p.y1, s.z + p.z0, first,
+                                       last, format.read, destination);
     // A TIFF strip that is cut short is filled with zeros and only noted.
     return read && !_input->has_error();
 }
 
 Status ImageFile::readSlices(const PixelFormat& format, int z, void* destination)
 {
+    return readPart(format, {0, spec().height, z, std::min(z + sliceStep(), spec().depth)},
+                    destination);
+}
+
+Status ImageFile::readRows(const PixelFormat& format, int begin, int end, void* destination)
+{
+    const int tile = spec().tile_width > 0 ? std::max(spec().tile_height, 1) : 1;
+    const int from = begin / tile * tile;
+    const int to = std::min((end + tile - 1) / tile * tile, spec().height);
+    if (from == begin && to == end) return readPart(format, {begin, end, 0, 1}, destination);
+    const auto row = static_cast<std::size_t>(
+        core::voxelBytes({spec().width, 1, 1}, format.type, format.components));
+    std::vector<unsigned char> tiles(row * std::size_t(to - from));
+    Status status = readPart(format, {from, to, 0, 1}, tiles.data());
+    if (status.ok())
+        std::memcpy(destination, tiles.data() + row * std::size_t(begin - from),
+                    row * std::size_t(end - begin));
+    return status;
+}
+
+Status ImageFile::readPart(const PixelFormat& format, const Part& part, void* destination)
+{
     const Status failed(ErrorCode::FILE_UNREADABLE,
                         _path + ", of " + std::to_string(fileBytes(_path)) + " bytes: slice " +
-                            std::to_string(_subimage + z) + " cannot be read: ");
+                            std::to_string(_subimage + part.z0) + " cannot be read: ");
     try {
-        const int end = std::min(z + sliceStep(), spec().depth);
         if (format.direct()) {
-            if (readPixels(format, z, end, destination)) return {};
+            if (readPixels(format, part, destination)) return {};
             return {failed.code, failed.text + reason()};
         }
-        const std::size_t pixels =
-            static_cast<std::size_t>(core::sampleCount({spec().width, spec().height, end - z}));
+        const std::size_t pixels = static_cast<std::size_t>(
+            core::sampleCount({spec().width, part.y1 - part.y0, part.z1 - part.z0}));
         std::vector<unsigned char> buffer(pixels * static_cast<std::size_t>(format.channels) *
                                           format.read.size());
-        if (!readPixels(format, z, end, buffer.data()))
-            return {failed.code, failed.text + reason()};
+        if (!readPixels(format, part, buffer.data())) return {failed.code, failed.text + reason()};
         const std::size_t values = pixels * static_cast<std::size_t>(format.components);
         if (format.read == OIIO::TypeDesc::UINT64)
             toVoxels<std::uint64_t>(buffer.data(), format, values, destination);
@@ -240,9 +273,9 @@ Status ImageFile::checkBytes(std::int64_t voxelBytes) const
 {
     const std::int64_t found = fileBytes(_path);
     const bool plain = spec().get_string_attribute("compression") == "none";
-    // Sparse grids say in a few bytes that a region is constant.
-    const bool sparse = std::string(_input->format_name()) == "openvdb";
-    if (sparse || voxelBytes / (plain ? 1 : HIGHEST_COMPRESSION) <= found) return {};
+    if (_tags.bitsPerSample < 8)
+        voxelBytes = voxelBytes * static_cast<std::int64_t>(_tags.bitsPerSample) / 8;
+    if (voxelBytes / (plain ? 1 : HIGHEST_COMPRESSION) <= found) return {};
     return {ErrorCode::FILE_UNREADABLE,
             _path + " has " + std::to_string(found) + " bytes, where its voxels need " +
                 (plain ? "" : "even compressed ") +

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../VoxelSource.h"
+#include "TiffTags.h"
 
 #include <OpenImageIO/imageio.h>
 
@@ -18,13 +19,15 @@ struct PixelFormat
     std::optional<int> channel;                  ///< that was asked for
     int first = 0;                               ///< of those that are read
     int channels = 1;                            ///< so many are read
+    int shift = 0;         ///< bits that OpenImageIO has widened integers by: 1 bit to 8, 12 to 16
+    bool inverted = false; ///< by OpenImageIO: masks whose 0 is white
     VoxelType type = VoxelType::UINT8;
     int components = 1;
 
     /// True where pixels are stored as they are read.
     bool direct() const
     {
-        return channels == components && read != OIIO::TypeDesc::INT64 &&
+        return channels == components && shift == 0 && !inverted && read != OIIO::TypeDesc::INT64 &&
                read != OIIO::TypeDesc::UINT64;
     }
     bool operator==(const PixelFormat& o) const
@@ -55,16 +58,24 @@ public:
     int sliceStep() const;
     /// Writes slices [z, z + sliceStep()) of the present subimage, as far as there are any.
     Status readSlices(const PixelFormat& format, int z, void* destination);
+    /// Writes rows [begin, end) of the present subimage, which is 2D.
+    Status readRows(const PixelFormat& format, int begin, int end, void* destination);
     /// Refuses voxels that the file cannot hold: before anything is allocated.
     Status checkBytes(std::int64_t voxelBytes) const;
 
 private:
-    bool readPixels(const PixelFormat& format, int z, int end, void* destination);
+    struct Part // of a subimage: rows and slices
+    {
+        int y0, y1, z0, z1;
+    };
+    Status readPart(const PixelFormat& format, const Part& part, void* destination);
+    bool readPixels(const PixelFormat& format, const Part& part, void* destination);
     std::string reason() const;
 
     std::string _path;
     std::unique_ptr<OIIO::ImageInput> _input;
     int _subimage = 0;
+    TiffTags _tags;
 };
 
 } // namespace io

@@ -1,8 +1,16 @@
 #include "ImageFile.h"
+#include "ImageSource.h"
+#include "PageLayout.h"
+#include "TiffVolume.h"
 #include "VoxelFiles.h"
+
+#include "../Paging.h"
+#include "../VoxelSeries.h"
 
 #include "../core/Text.h"
 #include "../core/voxels/VoxelData.h"
+
+#include <osg/Notify>
 
 namespace osgVolumizer {
 namespace io {
@@ -11,16 +19,20 @@ namespace {
 
 constexpr int MAXIMUM_SLICES = 1 << 20;
 
-/// Voxels for slices like those that `file` is at, `slices` of them.
-Result<MemorySource> allocate(const ImageFile& file, const PixelFormat& format, int slices)
+VoxelSource::Description describe(const ImageFile& file, const PixelFormat& format, int slices)
 {
     VoxelSource::Description description;
     description.size = glm::ivec3(file.size().x, file.size().y, slices);
     description.type = format.type;
     description.components = format.components;
+    return description;
+}
+
+Result<MemorySource> allocate(const std::string& path, const VoxelSource::Description& description)
+{
     MemorySource source = new MemoryVoxelSource;
     if (Status status = source->allocate(description); !status.ok())
-        return Status(status.code, file.path() + ": " + status.text);
+        return Status(status.code, path + ": " + status.text);
     return source;
 }
 
@@ -56,7 +68,7 @@ Result<Source> readDeep(ImageFile& file, const PixelFormat& format, const Progre
 {
     const int depth = file.size().z;
     if (Status status = file.checkBytes(bytesOf(file, format, depth)); !status.ok()) return status;
-    Result<MemorySource> source = allocate(file, format, depth);
+    Result<MemorySource> source = allocate(file.path(), describe(file, format, depth));
     if (!source.ok()) return source.status;
     for (int z = 0; z < depth; z += file.sliceStep()) {
         if (Status status = file.readSlices(format, z, sliceAt(*source, z)); !status.ok())
@@ -66,41 +78,124 @@ Result<Source> readDeep(ImageFile& file, const PixelFormat& format, const Progre
     return Source(*source);
 }
 
+// How many pages there are, all like the first.
+Result<int> countPages(ImageFile& file, const PixelFormat& format)
+{
+    const glm::ivec3 size = file.size();
+    const std::string first = file.text();
+    int pages = 1;
+    for (; file.seek(pages); ++pages) {
+        const std::string which = file.path() + ", subimage " + std::to_string(pages);
+        if (Status status = compare(file, which, size, format, first); !status.ok()) return status;
+        if (pages == MAXIMUM_SLICES)
+            return Status(ErrorCode::TOO_LARGE,
+                          file.path() + " has more than " + std::to_string(pages) + " subimages");
+    }
+    file.seek(0);
+    return pages;
+}
+
+PageLayout layoutOf(const ImageFile& file, int pages)
+{
+    const OIIO::ImageSpec& spec = file.spec();
+    PageLayout::File known;
+    known.pages = pages;
+    known.samples = spec.nchannels;
+    known.xResolution = spec.get_float_attribute("XResolution");
+    known.yResolution = spec.get_float_attribute("YResolution");
+    PageLayout layout =
+        PageLayout::parse(spec.get_string_attribute("ImageDescription").c_str(), known);
+    for (const std::string& notice : layout.notices)
+        OSG_NOTICE << "osgVolumizer: " << file.path() << ": " << notice << std::endl;
+    return layout;
+}
+
+/// The slices of one channel at one time.
+struct Pages
+{
+    std::string path;
+    VoxelSource::Description description;
+    PixelFormat format;
+    std::vector<int> pages;
+};
+
+Result<Source> readPages(const Pages& p, const Progress& progress)
+{
+    if (p.description.sizeInBytes() > getPagingBudget().memoryBytes / 2) {
+        osg::ref_ptr<ImageSource> source = new ImageSource;
+        Status status = source->open(p.path, p.description, p.format, p.pages);
+        if (!status.ok()) return status;
+        return Source(source);
+    }
+    ImageFile file;
+    if (Status status = file.open(p.path); !status.ok()) return status;
+    Result<MemorySource> source = allocate(p.path, p.description);
+    if (!source.ok()) return source.status;
+    const int slices = static_cast<int>(p.pages.size());
+    for (int z = 0; z < slices; ++z) {
+        if (!file.seek(p.pages[std::size_t(z)]))
+            return Status(ErrorCode::FILE_UNREADABLE,
+                          p.path + ": slice " + std::to_string(z) + " cannot be found again");
+        if (Status status = file.readSlices(p.format, 0, sliceAt(*source, z)); !status.ok())
+            return status;
+        report(progress, z + 1, slices);
+    }
+    return Source(*source);
+}
+
+Result<Source> readSteps(const Pages& first, const PageLayout& layout, int channel,
+                         const Progress& progress)
+{
+    const auto open = [first, layout, channel, progress](int step) {
+        Pages p = first;
+        for (int z = 0; z < layout.slices; ++z)
+            p.pages[std::size_t(z)] = layout.page(z, channel, step);
+        return readPages(p, layout.steps == 1 ? progress : Progress());
+    };
+    if (layout.steps == 1) return open(0);
+    osg::ref_ptr<VoxelSeries> series = new VoxelSeries;
+    const CallerReports quiet;
+    Status status = series->setSteps(layout.steps, open);
+    if (!status.ok()) return status;
+    return Source(series);
+}
+
 } // namespace
 
 Result<Source> readImage(const std::string& path, std::optional<int> channel,
                          const Progress& progress)
 {
     ImageFile file;
-    if (Status status = file.open(path); !status.ok()) return status;
-    const Result<PixelFormat> format = file.pixelFormat(channel);
+    Status status = file.open(path);
+    if (status.code == ErrorCode::NOT_SUPPORTED) return readByLibtiff(path, channel);
+    if (!status.ok()) return status;
+    // Without a channel: a first look, how many there are.
+    Result<PixelFormat> format = file.pixelFormat();
+    if (!format.ok()) return format.status;
+    const Result<int> pages = file.size().z > 1 ? Result<int>(1) : countPages(file, *format);
+    if (!pages.ok()) return pages.status;
+    const PageLayout layout = layoutOf(file, *pages);
+    const bool inPages = layout.channels > 1; // else side by side
+    if (inPages && channel.value_or(0) >= layout.channels)
+        return Status(ErrorCode::INDEX_OUT_OF_RANGE,
+                      path + " has no channel " + std::to_string(*channel) + ", but " +
+                          std::to_string(layout.channels) + ", from 0 on");
+    if (inPages && !channel)
+        OSG_NOTICE << "osgVolumizer: " << path << " has " << layout.channels
+                   << " channels, of which the first is shown: channel=0 to " << layout.channels - 1
+                   << " choose" << std::endl;
+    if (!inPages && channel) format = file.pixelFormat(channel);
     if (!format.ok()) return format.status;
     if (file.size().z > 1) return readDeep(file, *format, progress);
-
-    const glm::ivec3 size = file.size();
-    const std::string first = file.text();
-    int slices = 1;
-    for (; file.seek(slices); ++slices) {
-        const std::string which = path + ", subimage " + std::to_string(slices);
-        if (Status status = compare(file, which, size, *format, first); !status.ok()) return status;
-        if (slices == MAXIMUM_SLICES)
-            return Status(ErrorCode::TOO_LARGE,
-                          path + " has more than " + std::to_string(slices) + " subimages");
-    }
-    file.seek(0);
-    if (Status status = file.checkBytes(bytesOf(file, *format, slices)); !status.ok())
-        return status;
-    Result<MemorySource> source = allocate(file, *format, slices);
-    if (!source.ok()) return source.status;
-    for (int z = 0; z < slices; ++z) {
-        if (!file.seek(z))
-            return Status(ErrorCode::FILE_UNREADABLE,
-                          path + ": slice " + std::to_string(z) + " cannot be found again");
-        if (Status status = file.readSlices(*format, 0, sliceAt(*source, z)); !status.ok())
-            return status;
-        report(progress, z + 1, slices);
-    }
-    return Source(*source);
+    if (layout.single) return readSinglePage(path, layout, channel.value_or(0));
+    status = file.checkBytes(bytesOf(file, *format, *pages));
+    if (!status.ok()) return status;
+    Pages first{path, describe(file, *format, layout.slices), *format, {}};
+    first.description.spacing = layout.spacing;
+    first.description.origin = layout.origin;
+    first.description.axes = layout.axes;
+    first.pages.resize(std::size_t(layout.slices));
+    return readSteps(first, layout, inPages ? channel.value_or(0) : 0, progress);
 }
 
 Result<Source> readStack(const std::vector<std::string>& paths, const Progress& progress)
@@ -123,7 +218,7 @@ Result<Source> readStack(const std::vector<std::string>& paths, const Progress& 
             if (size.z != 1)
                 return Status(ErrorCode::SIZE_MISMATCH,
                               file.path() + " has " + first + ", which is no single slice");
-            source = allocate(file, format, slices);
+            source = allocate(file.path(), describe(file, format, slices));
             if (!source.ok()) return source.status;
         }
         Status status = compare(file, file.path(), size, format, first);

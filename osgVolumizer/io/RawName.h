@@ -19,6 +19,7 @@ struct RawName
     VoxelType type = VoxelType::UINT8;
     std::int64_t headerBytes = 0;
     bool bigEndian = false; ///< as the file is; little unless said otherwise
+    int sliceStep = 1;      ///< of the file's slices, those of other channels lie between
 
     /// Bytes that the file has to have; saturates.
     std::int64_t fileBytes() const;

@@ -49,8 +49,8 @@ private:
 
 RawVoxelSource::RawVoxelSource(const RawVoxelSource& o, const osg::CopyOp& op)
     : VoxelSource(o, op), _description(o._description), _path(o._path),
-      _headerBytes(o._headerBytes), _fileBytes(o._fileBytes), _levels(o._levels), _swaps(o._swaps),
-      _file(o._file)
+      _headerBytes(o._headerBytes), _fileBytes(o._fileBytes), _levels(o._levels),
+      _sliceStep(o._sliceStep), _swaps(o._swaps), _file(o._file)
 {
 }
 
@@ -70,6 +70,7 @@ Status RawVoxelSource::open(const RawName& raw, const std::string& path)
     _levels = description.sizeInBytes() > getPagingBudget().memoryBytes / 2
                   ? core::BrickTree::levelsFor(raw.size, pageSize())
                   : 1;
+    _sliceStep = raw.sliceStep;
     _swaps = raw.bigEndian != hostIsBigEndian() && voxelTypeSize(raw.type) > 1;
     _file = std::move(file);
     return {};
@@ -101,7 +102,7 @@ Status RawVoxelSource::readLayer(const core::Box3i& region, int z, unsigned char
     const auto voxel = static_cast<std::int64_t>(voxelTypeSize(_description.type));
     const std::int64_t row = region.size().x * voxel, pitch = all.x * voxel;
     const auto offsetOf = [&](int y) {
-        return ((std::int64_t(z) * all.y + y) * all.x + region.min.x) * voxel;
+        return ((std::int64_t(z) * _sliceStep * all.y + y) * all.x + region.min.x) * voxel;
     };
     const int rows = region.size().y;
     if (row == pitch) return readBytes(offsetOf(region.min.y), row * rows, destination);

@@ -25,6 +25,14 @@ public:
     /// FILE_UNREADABLE, VALUE_INVALID. Expects that the file has the bytes that `raw` says.
     Status open(const RawName& raw, const std::string& path);
 
+    /// Where the voxels lie, as a file around them says.
+    void setPlace(const glm::dvec3& spacing, const glm::dvec3& origin, const glm::dmat3& axes)
+    {
+        _description.spacing = spacing;
+        _description.origin = origin;
+        _description.axes = axes;
+    }
+
     Description describe() const override { return _description; }
     Status read(const core::Box3i& region, void* destination) const override;
     int levelCount() const override { return _levels; }
@@ -42,7 +50,7 @@ private:
     Description _description;
     std::string _path;
     std::int64_t _headerBytes = 0, _fileBytes = 0;
-    int _levels = 1;
+    int _levels = 1, _sliceStep = 1;
     bool _swaps = false; ///< the file's byte order is not the host's
     std::shared_ptr<const File> _file;
 };

@@ -146,7 +146,9 @@ bool setOrientation(VoxelOptions& o, const std::string& text)
     static const std::string letters = "LRPASI";
     glm::dmat3 axes(0.0);
     bool taken[3] = {};
-    if (text.size() != 3) return false;
+    o.axesOfFile = text == "file";
+    if (o.axesOfFile) o.axes.reset();
+    if (text.size() != 3) return o.axesOfFile;
     for (int i = 0; i < 3; ++i) {
         const auto at = letters.find(
             static_cast<char>(std::toupper(static_cast<unsigned char>(text[std::size_t(i)]))));
@@ -165,9 +167,11 @@ const std::vector<Row>& rows()
          "object units between samples; the file's, or 1,1,1", setSpacing},
         {"origin", "three numbers, x,y,z", "x,y,z",
          "object position of the first sample; the file's, or 0,0,0", setOrigin},
-        {"orientation", "three letters of L or R, P or A, S or I", "LPS",
+        {"orientation", "three letters of L or R, P or A, S or I, or file", "LPS or file",
          "where the axes of the voxels point: Left or Right, Posterior or Anterior, Superior or "
-         "Inferior; object axes are LPS",
+         "Inferior; object axes are LPS. file: as it says, also of a single slice, which else "
+         "faces "
+         "the viewer",
          setOrientation},
         {"range", "two rising numbers, low,high", "low,high",
          "data values at the ends of the table's domain", setRange},

@@ -33,6 +33,7 @@ struct VoxelOptions
     std::optional<std::string> table;      ///< file name
     std::optional<glm::dvec3> ramp;        ///< centre and width, fractions of the range; opacity
     std::optional<glm::dmat3> axes;        ///< directions of the voxel axes, a column each
+    bool axesOfFile = false;               ///< those of the file, also of a single slice
     std::vector<std::pair<const AppearanceProperty*, AppearanceProperty::Values>> properties;
     std::vector<std::string> foreign; ///< names of options that are none of these
 

@@ -1,19 +1,18 @@
 #include "GridFile.h"
 
+#include "ErrorKeeper.h"
 #include "LegacyCells.h"
 
 #include <osgVolumizer/core/RegularFile.h>
 
 #include <osgDB/FileNameUtils>
 
-#include <vtkCallbackCommand.h>
-#include <vtkCommand.h>
-#include <vtkErrorCode.h>
 #include <vtkExecutive.h>
 #include <vtkNew.h>
 #include <vtkUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <algorithm>
 #include <exception>
 #include <fstream>
 #include <sstream>
@@ -23,72 +22,82 @@ namespace vtk {
 
 namespace {
 
-// Keeps the first error of a reader instead of printing it.
-void keepError(vtkObject*, unsigned long, void* client, void* text)
+Status unreadable(const std::string& path, const std::string& why)
 {
-    auto& error = *static_cast<std::string*>(client);
-    if (!error.empty() || !text) return;
-    error = static_cast<const char*>(text);
-    // VTK's form is "ERROR: In FILE, line N\nCLASS (ADDRESS): WORDS\n\n".
-    const std::size_t words = error.find("): ");
-    if (words != std::string::npos) error.erase(0, words + 3);
-    error.erase(error.find_last_not_of(" \n\r\t.") + 1);
-    for (char& c : error)
-        if (c == '\n') c = ' ';
+    return {ErrorCode::FILE_UNREADABLE, "File '" + path + "': " + why + "."};
 }
 
-template <class Reader>
-vtkSmartPointer<vtkUnstructuredGrid> runReader(Reader& reader, vtkCommand& keep,
-                                               const std::string& path, std::string& error)
+// Step `step` of those that a file may have.
+Result<GridFile> readXml(const std::string& path, int step, ErrorKeeper& errors)
 {
-    reader.GetExecutive()->AddObserver(vtkCommand::ErrorEvent, &keep);
-    reader.SetFileName(path.c_str());
-    reader.Update();
-    if (error.empty() && reader.GetErrorCode() != vtkErrorCode::NoError)
-        error = vtkErrorCode::GetStringFromErrorCode(reader.GetErrorCode());
-    return reader.GetOutput();
+    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    errors.watch(*reader);
+    errors.watch(*reader->GetExecutive());
+    reader->SetReaderErrorObserver(errors.command());
+    reader->SetParserErrorObserver(errors.command());
+    reader->SetFileName(path.c_str());
+    reader->UpdateInformation();
+    GridFile file;
+    file.steps = std::max(reader->GetNumberOfTimeSteps(), 1);
+    if (step >= file.steps && errors.error().empty())
+        return Status(ErrorCode::INDEX_OUT_OF_RANGE,
+                      "File '" + path + "': there is no time step " + std::to_string(step) +
+                          ", but " + std::to_string(file.steps) + ", from 0 on.");
+    reader->SetTimeStep(step);
+    errors.run(*reader);
+    file.grid = reader->GetOutput();
+    return file;
+}
+
+Result<GridFile> readLegacy(const std::string& path, ErrorKeeper& errors)
+{
+    vtkNew<vtkUnstructuredGridReader> reader;
+    errors.watch(*reader);
+    errors.watch(*reader->GetExecutive());
+    reader->SetFileName(path.c_str());
+    if (!reader->IsFileUnstructuredGrid())
+        return unreadable(path, "not a VTK file with DATASET UNSTRUCTURED_GRID");
+    std::ifstream stream(path, std::ios::binary);
+    std::stringstream content;
+    content << stream.rdbuf();
+    if (const Status cells = checkLegacyCells(content.str()); !cells)
+        return unreadable(path, cells.text);
+    errors.run(*reader);
+    GridFile file;
+    file.grid = reader->GetOutput();
+    return file;
 }
 
 } // namespace
 
-Result<vtkSmartPointer<vtkUnstructuredGrid>> readGrid(const std::string& path)
+Result<GridFile> readGrid(const std::string& path, int step)
 {
-    const auto unreadable = [&path](const std::string& why) {
-        return Status(ErrorCode::FILE_UNREADABLE, "File '" + path + "': " + why + ".");
-    };
     if (const Status status = core::requireRegularFile(path); !status)
         return Status(status.code, "File " + status.text + ".");
     try {
-        std::string error;
-        vtkNew<vtkCallbackCommand> keep;
-        keep->SetCallback(keepError);
-        keep->SetClientData(&error);
-        vtkSmartPointer<vtkUnstructuredGrid> grid;
-        if (osgDB::getLowerCaseFileExtension(path) == "vtu") {
-            vtkNew<vtkXMLUnstructuredGridReader> reader;
-            reader->AddObserver(vtkCommand::ErrorEvent, keep);
-            reader->SetParserErrorObserver(keep);
-            grid = runReader(*reader, *keep, path, error);
-        } else {
-            vtkNew<vtkUnstructuredGridReader> reader;
-            reader->AddObserver(vtkCommand::ErrorEvent, keep);
-            reader->SetFileName(path.c_str());
-            if (!reader->IsFileUnstructuredGrid())
-                return unreadable("not a VTK file with DATASET UNSTRUCTURED_GRID");
-            std::ifstream file(path, std::ios::binary);
-            std::stringstream content;
-            content << file.rdbuf();
-            if (const Status cells = checkLegacyCells(content.str()); !cells)
-                return unreadable(cells.text);
-            grid = runReader(*reader, *keep, path, error);
-        }
-        if (!error.empty()) return unreadable(error);
-        if (!grid || !grid->GetPoints() || grid->GetNumberOfPoints() == 0)
-            return unreadable("there are no points");
-        return grid;
+        ErrorKeeper errors;
+        Result<GridFile> file = osgDB::getLowerCaseFileExtension(path) == "vtu"
+                                    ? readXml(path, step, errors)
+                                    : readLegacy(path, errors);
+        if (!file) return file;
+        if (!errors.error().empty()) return unreadable(path, errors.error());
+        if (!file->grid || !file->grid->GetPoints() || file->grid->GetNumberOfPoints() == 0)
+            return unreadable(path, "there are no points");
+        return file;
     } catch (const std::exception& e) {
-        return unreadable(e.what());
+        return unreadable(path, e.what());
     }
+}
+
+bool holdsVolume(const std::string& path)
+{
+    if (osgDB::getLowerCaseFileExtension(path) == "vtu" || !core::requireRegularFile(path))
+        return false;
+    ErrorKeeper errors;
+    vtkNew<vtkUnstructuredGridReader> reader;
+    errors.watch(*reader);
+    reader->SetFileName(path.c_str());
+    return reader->IsFileStructuredPoints() || reader->IsFileRectilinearGrid();
 }
 
 } // namespace vtk

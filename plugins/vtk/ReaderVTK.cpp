@@ -1,22 +1,26 @@
 // Unstructured grids through VTK's own readers: .vtk (legacy) and .vtu (XML), as a VolumeAppearance
 // over one VolumeGeometry, as in:
 // osgviewer -O "table=heat.lut scalars=temperature unit=5" engine.vtu
+// Images and rectilinear grids in .vtk are what readVolume() makes of them.
 
 #include "GridFile.h"
 #include "GridGeometry.h"
 
 #include <osgVolumizer/Error.h>
+#include <osgVolumizer/ReadVolume.h>
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/VolumeGeometry.h>
+#include <osgVolumizer/core/Text.h>
 
+#include <osg/Notify>
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
 #include <osgDB/ReaderWriter>
 #include <osgDB/Registry>
 
 #include <cmath>
-#include <cstdlib>
-#include <sstream>
+#include <limits>
+#include <optional>
 
 #define OSGVOLUMIZER_TEXT_OF(name) #name
 #define OSGVOLUMIZER_TEXT(name) OSGVOLUMIZER_TEXT_OF(name)
@@ -30,26 +34,38 @@ const char* const EXTENSION = OSGVOLUMIZER_TEXT(OSGVOLUMIZER_EXTENSION);
 
 struct Said
 {
-    std::string table, scalars;
+    std::string table, scalars, dataset;
     double unit = 0.0; ///< 0: not said
+    std::optional<int> step;
 };
 
 Result<Said> parseOptions(const osgDB::Options* options)
 {
     Said said;
-    std::istringstream words(options ? options->getOptionString() : std::string());
-    for (std::string word; words >> word;) {
-        const std::size_t equals = word.find('=');
-        const std::string key = word.substr(0, equals);
-        const std::string value = equals == std::string::npos ? "" : word.substr(equals + 1);
-        if (key == "table") said.table = value;
-        if (key == "scalars") said.scalars = value;
-        if (key != "unit") continue;
-        char* end = nullptr;
-        said.unit = std::strtod(value.c_str(), &end);
-        if (value.empty() || *end || !(said.unit > 0.0) || !std::isfinite(said.unit))
-            return Status(ErrorCode::VALUE_INVALID, "option unit is '" + value + "'");
+    for (const core::Option& option :
+         core::splitOptions(options ? options->getOptionString() : std::string())) {
+        const std::string& value = option.value;
+        const auto bad = [&option]() {
+            return Status(ErrorCode::VALUE_INVALID,
+                          "option " + option.name + " is '" + option.value + "'");
+        };
+        if (option.name == "table") said.table = value;
+        if (option.name == "scalars") said.scalars = value;
+        if (option.name == "dataset") said.dataset = value;
+        if (option.name == "unit") {
+            if (!core::parseNumber(value, said.unit) || !(said.unit > 0.0) ||
+                !std::isfinite(said.unit))
+                return bad();
+        }
+        if (option.name == "step") {
+            std::int64_t step = 0;
+            if (!core::parseInteger(value, step) || step < 0 ||
+                step > std::numeric_limits<int>::max())
+                return bad();
+            said.step = static_cast<int>(step);
+        }
     }
+    if (said.scalars.empty()) said.scalars = said.dataset;
     return said;
 }
 
@@ -91,9 +107,12 @@ Result<osg::ref_ptr<osg::Node>> read(const std::string& path, const osgDB::Optio
     };
     const Result<Said> said = parseOptions(options);
     if (!said) return inFile(said.status);
-    const Result<vtkSmartPointer<vtkUnstructuredGrid>> grid = readGrid(path);
-    if (!grid) return grid.status;
-    Result<GridGeometry> geometry = convertGrid(**grid, said->scalars);
+    const Result<GridFile> file = readGrid(path, said->step.value_or(0));
+    if (!file) return file.status;
+    if (file->steps > 1 && !said->step)
+        OSG_NOTICE << "osgVolumizer: " << path << " has " << file->steps
+                   << " time steps, the first of which is shown; step=n shows another" << std::endl;
+    Result<GridGeometry> geometry = convertGrid(*file->grid, said->scalars);
     if (!geometry) return inFile(geometry.status);
 
     osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
@@ -118,12 +137,28 @@ Result<osg::ref_ptr<osg::Node>> read(const std::string& path, const osgDB::Optio
     return osg::ref_ptr<osg::Node>(appearance);
 }
 
+// An image or a rectilinear grid: voxels, with readVolume()'s options, and scalars= for dataset=.
+Result<osg::ref_ptr<osg::Node>> readVoxelsOf(const std::string& path, const osgDB::Options* options)
+{
+    osg::ref_ptr<osgDB::Options> local = options ? options->cloneOptions() : new osgDB::Options;
+    const Result<Said> said = parseOptions(options);
+    if (said && said->dataset.empty() && !said->scalars.empty()) {
+        const char mark = said->scalars.find('"') == std::string::npos ? '"' : '\'';
+        local->setOptionString(local->getOptionString() + " dataset=" + mark + said->scalars +
+                               mark);
+    }
+    const auto volume = readVolume(path, local);
+    if (!volume.ok()) return volume.status;
+    return osg::ref_ptr<osg::Node>(volume->get());
+}
+
 class ReaderVTK : public osgDB::ReaderWriter
 {
 public:
     ReaderVTK()
     {
         supportsExtension(EXTENSION, "Unstructured grid of VTK (osgVolumizer)");
+        supportsOption("step=n", "Time step of a .vtu file of several, from 0; the first");
         supportsOption("scalars=name", "Point array to show; the active scalars");
         supportsOption("table=file", "Lookup table for scalars, .lut or .tf; a white ramp");
         supportsOption("unit=x", "Object units that opacities are stated for");
@@ -140,7 +175,8 @@ public:
             return ReadResult::FILE_NOT_HANDLED;
         const std::string path = osgDB::findDataFile(name, options);
         if (path.empty()) return ReadResult::FILE_NOT_FOUND;
-        const Result<osg::ref_ptr<osg::Node>> node = read(path, options);
+        const Result<osg::ref_ptr<osg::Node>> node =
+            holdsVolume(path) ? readVoxelsOf(path, options) : read(path, options);
         if (node.ok()) return node->get();
         reportError(node.status);
         return ReadResult(node.status.text); // that is, ERROR_IN_READING_FILE

@@ -197,4 +197,34 @@ TEST_F(Tool, WritingOverAFileReplacesItWhole)
     EXPECT_EQ(osg::Vec3i(4, 4, 2), (*voxels)->getSize());
 }
 
+TEST_F(Tool, InfoTellsAllThatIsKnown)
+{
+    ASSERT_EQ(0, run("mkcubes 12 8 10 4 cubes.tif --quiet")) << output;
+    ASSERT_EQ(0, run("info cubes.tif --quiet -O 'spacing=0.5,1,2 origin=1,2,3'")) << output;
+    for (const char* line :
+         {"size         12 x 8 x 10 voxels of uint8\n", "spacing      0.5,1,2\n",
+          "first voxel  1,2,3\n", "last voxel   6.5,9,21\n", "orientation  LPS\n",
+          "memory       960 bytes\n", "range        0 to 255", "of 960 samples\n"})
+        EXPECT_TRUE(says(line)) << line << output;
+    ASSERT_EQ(0, run("list cubes.tif")) << output;
+    EXPECT_EQ("* 12 x 8 x 10 of uint8\n", output);
+    EXPECT_EQ(1, run("info none.tif"));
+    EXPECT_TRUE(says("none.tif")) << output;
+    EXPECT_EQ(1, run("info cubes.tif -O spacing=0"));
+    EXPECT_TRUE(says("option spacing")) << output;
+    EXPECT_EQ(2, run("info"));
+}
+
+TEST_F(Tool, ConvertsWithWhereItLies)
+{
+    ASSERT_EQ(0, run("mkcubes 12 8 10 4 cubes.tif --quiet")) << output;
+    ASSERT_EQ(0, run("convert cubes.tif placed.tif --quiet -O 'spacing=0.5,1,2 origin=1,2,3'"))
+        << output;
+    const auto voxels = readVoxels(path("placed.tif"));
+    ASSERT_TRUE(voxels.ok()) << voxels.status.text;
+    EXPECT_EQ(osg::Vec3d(0.5, 1, 2), (*voxels)->getSpacing());
+    EXPECT_EQ(osg::Vec3d(1, 2, 3), (*voxels)->getOrigin());
+    EXPECT_EQ(values(**readVoxels(path("cubes.tif"))), values(**voxels));
+}
+
 } // namespace ToolTest

@@ -1,6 +1,7 @@
 #include <osgVolumizer/Paging.h>
 #include <osgVolumizer/ReadVoxels.h>
 #include <osgVolumizer/io/PluginFile.h>
+#include <osgVolumizer/io/VoxelOptions.h>
 
 #include "../support/FolderTest.h"
 #include "../support/LeaksOfOthers.h"
@@ -317,7 +318,8 @@ TEST_F(ReadVoxels, BadOptionsAreNamed)
                             "unit=x",          "table=",
                             "dataset=",        "dataset=a\"b'c",
                             "channel=-1",      "channel=1.5",
-                            "channel=",        "channel=2147483648"}) {
+                            "channel=",        "channel=2147483648",
+                            "dimensions=x",    "dimensions=a,b,c,d,e"}) {
         const Status status = statusOf(file, bad);
         EXPECT_EQ(ErrorCode::VALUE_INVALID, status.code);
         const std::string option = std::string(bad).substr(0, std::string(bad).find('='));
@@ -341,26 +343,33 @@ TEST_F(ReadVoxels, OptionsAreWrittenAsTheyAreRead)
     }
 }
 
-TEST_F(ReadVoxels, OnlyFormatsOfPluginsAreLeftToPlugins)
-{
-    for (const char* name : {"scan.h5", "a/SCAN.HDF5", "x.he5", "c:/d.e/cells.ims"}) {
-        const io::PluginFormat* format = io::pluginFormatOf(name);
-        ASSERT_TRUE(format) << name;
-        EXPECT_EQ(std::string("HDF5"), format->name);
-    }
-    for (const char* name : {"scan.tif", "scan.dcm", "scan.h5.tif", "a.h5/scan", "scan.", "h5",
-                             ".h5", "", "a/.ims", "scan_h5", "x.vdb", "x.exr", "x.raw", "x.png"})
-        EXPECT_FALSE(io::pluginFormatOf(name)) << name;
-}
-
 TEST_F(ReadVoxels, APluginThatIsMissingIsNamed)
 {
     const io::PluginFormat format{"osgvolumizer_none", "NONE", "libnone (Debian: libnone-dev)"};
-    const Status status = io::readByPlugin(format, "scan.none", {}).status;
+    io::VolumeRequest request;
+    request.path = "scan.none";
+    const std::string needs = "build with libnone (Debian: libnone-dev)";
+    const Status status = io::readByPlugin({format}, request).status;
     EXPECT_EQ(ErrorCode::NOT_SUPPORTED, status.code);
-    EXPECT_EQ("scan.none is NONE, which this build cannot read: build with libnone (Debian: "
-              "libnone-dev)",
-              status.text);
+    EXPECT_EQ("scan.none is NONE, which this build cannot read: " + needs, status.text);
+    EXPECT_EQ(status.text, io::listByPlugin({format}, request).status.text);
+    const osg::ref_ptr<MemoryVoxelSource> source = new MemoryVoxelSource;
+    EXPECT_EQ("scan.none is NONE, which this build cannot write: " + needs,
+              io::writeByPlugin({format}, *source, "scan.none").text);
+}
+
+TEST_F(ReadVoxels, FilesAreListed)
+{
+    const std::string file = writeBytes("v.raw", std::string(128, 'x')) + ".4,4,4,uint16";
+    const auto one = listVolumes(file);
+    ASSERT_TRUE(one.ok()) << one.status.text;
+    ASSERT_EQ(1u, one->size());
+    EXPECT_EQ(osg::Vec3i(4, 4, 4), one->front().size);
+    EXPECT_EQ(VoxelType::UINT16, one->front().type);
+    EXPECT_TRUE(one->front().chosen);
+    EXPECT_EQ(ErrorCode::FILE_NOT_FOUND, listVolumes(path("none.tif")).status.code);
+    EXPECT_EQ(ErrorCode::VALUE_INVALID,
+              listVolumes(file, optionString("channel=x").get()).status.code);
 }
 
 TEST_F(ReadVoxels, OptionsOfOthersAreLeftToThem)
@@ -554,7 +563,7 @@ TEST_F(ReadVoxels, SlicesWithinAPageAreRefused)
     bytes.append(4 + 24, '\0');
     const Status status = statusOf(writeBytes("sgi.tif", bytes));
     EXPECT_EQ(ErrorCode::NOT_SUPPORTED, status.code);
-    EXPECT_TRUE(names(status, "sgi.tif has ImageDepth 2")) << status.text;
+    EXPECT_TRUE(names(status, "sgi.tif") && names(status, "ImageDepth")) << status.text;
 }
 
 TEST_F(ReadVoxels, UnequalSlices)

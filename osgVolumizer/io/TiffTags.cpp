@@ -1,4 +1,4 @@
-#include "TiffDepth.h"
+#include "TiffTags.h"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@ namespace io {
 
 namespace {
 
-constexpr std::uint64_t IMAGE_DEPTH = 32997;
+constexpr std::uint64_t BITS_PER_SAMPLE = 258, PHOTOMETRIC = 262, IMAGE_DEPTH = 32997;
 constexpr std::uint64_t MAXIMUM_ENTRIES = 4096; // of a directory
 
 /// Numbers of a file in its own byte order; 0 beyond its end.
@@ -36,26 +36,33 @@ private:
 
 } // namespace
 
-std::uint64_t tiffImageDepth(std::istream& file)
+TiffTags TiffTags::read(std::istream& file)
 {
+    TiffTags tags;
     char order[2] = {};
     file.clear();
     file.seekg(0);
     if (!file.read(order, 2) || order[0] != order[1] || (order[0] != 'I' && order[0] != 'M'))
-        return 1;
+        return tags;
     Numbers numbers(file, order[0] == 'M');
     const std::uint64_t magic = numbers.at(2, 2);
-    if (magic != 42 && magic != 43) return 1;
+    if (magic != 42 && magic != 43) return tags;
     const bool big = magic == 43;
     const std::uint64_t directory = big ? numbers.at(8, 8) : numbers.at(4, 4);
     const std::uint64_t entries = std::min(numbers.at(directory, big ? 8 : 2), MAXIMUM_ENTRIES);
+    tags.bitsPerSample = 1;
     for (std::uint64_t i = 0; i < entries; ++i) {
         const std::uint64_t entry = directory + (big ? 8 + 20 * i : 2 + 12 * i);
-        if (numbers.at(entry, 2) != IMAGE_DEPTH) continue;
-        const bool isShort = numbers.at(entry + 2, 2) == 3;
-        return std::max<std::uint64_t>(1, numbers.at(entry + (big ? 12 : 8), isShort ? 2 : 4));
+        const std::uint64_t tag = numbers.at(entry, 2), isShort = numbers.at(entry + 2, 2) == 3;
+        const std::uint64_t count = big ? numbers.at(entry + 4, 8) : numbers.at(entry + 4, 4);
+        const std::uint64_t value = entry + (big ? 12 : 8);
+        const std::uint64_t number = numbers.at(value, isShort ? 2 : 4);
+        if (tag == IMAGE_DEPTH) tags.imageDepth = std::max<std::uint64_t>(1, number);
+        if (tag == PHOTOMETRIC) tags.minIsWhite = number == 0;
+        // Of several channels the numbers may lie elsewhere: those are whole bytes.
+        if (tag == BITS_PER_SAMPLE) tags.bitsPerSample = count > (big ? 4u : 2u) ? 8 : number;
     }
-    return 1;
+    return tags;
 }
 
 } // namespace io

@@ -1,0 +1,192 @@
+#include "GdalSource.h"
+
+#include "Interpolate.h"
+#include "Session.h"
+
+#include <osgVolumizer/Paging.h>
+#include <osgVolumizer/core/voxels/BrickTree.h>
+#include <osgVolumizer/core/voxels/VoxelData.h>
+
+#include <osg/Notify>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+
+namespace osgVolumizer {
+namespace gdal {
+
+namespace {
+
+constexpr std::size_t BATCH_BYTES = std::size_t(1) << 25; // of numbers that become values
+
+bool areLongs(const GDALMDArray& array)
+{
+    return typeOf(array) == VoxelType::FLOAT64 &&
+           array.GetDataType().GetNumericDataType() != GDT_Float64;
+}
+
+// The narrowest integer type for a range of whole numbers.
+VoxelType narrowest(double low, double high)
+{
+    for (const VoxelType type : {VoxelType::UINT8, VoxelType::UINT16, VoxelType::INT16,
+                                 VoxelType::UINT32, VoxelType::INT32}) {
+        double least = 0.0, most = 0.0;
+        voxelTypeRange(type, least, most);
+        if (low >= least && high <= most) return type;
+    }
+    return VoxelType::FLOAT64;
+}
+
+} // namespace
+
+GdalSource::GdalSource(const GdalSource& o, const osg::CopyOp& op)
+    : VoxelSource(o, op), _path(o._path), _layout(o._layout), _levelCount(o._levelCount),
+      _file(o._file), _variable(o._variable)
+{
+}
+
+Status GdalSource::open(const std::string& path, const std::string& dataset,
+                        const std::string& dimensions)
+{
+    const Session session;
+    const Result<std::shared_ptr<const File>> file = File::open(path);
+    if (!file.ok()) return file.status;
+    const Result<std::size_t> chosen = (*file)->choose(dataset);
+    if (!chosen.ok()) return chosen.status;
+    const Variable& variable = (*file)->variables()[*chosen];
+    const Result<Layout> layout = layoutOf(variable, dimensions, (*file)->driver());
+    if (!layout.ok())
+        return {layout.status.code, path + ": " + layout.status.text, layout.status.index};
+    _path = path;
+    _layout = *layout;
+    _file = *file;
+    _variable = *chosen;
+    if (dataset.empty() && _file->variables().size() > 1)
+        _layout.notices.insert(_layout.notices.begin(),
+                               variable.path + " is read, of " + _file->names());
+    const auto isLarge = [this] {
+        return _layout.description.sizeInBytes() > getPagingBudget().memoryBytes / 2;
+    };
+    if (areLongs(*variable.array) && _layout.description.type == VoxelType::FLOAT64 &&
+        _layout.calibration.isPlain() && !isLarge())
+        narrowLongs();
+    if (isLarge() || _layout.steps > 1)
+        _levelCount = core::BrickTree::levelsFor(_layout.description.size, pageSize());
+    for (const std::string& notice : _layout.notices)
+        OSG_NOTICE << "osgVolumizer: " << path << ": " << notice << std::endl;
+    return {};
+}
+
+// Reads all; what cannot be read is found out by others.
+void GdalSource::narrowLongs()
+{
+    const glm::ivec3 size = _layout.description.size;
+    std::vector<double> slice(std::size_t(size.x) * size.y);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (int step = 0; step < _layout.steps; ++step)
+        for (int z = 0; z < size.z; ++z) {
+            if (!readFrom(step, 0, {{0, 0, z}, {size.x, size.y, z + 1}}, slice.data()).ok()) return;
+            const auto [least, most] = std::minmax_element(slice.begin(), slice.end());
+            low = std::min(low, *least);
+            high = std::max(high, *most);
+        }
+    for (const Axis& axis : _layout.axes)
+        if (!axis.places.empty()) return;
+    _layout.numbers = _layout.description.type = narrowest(low, high);
+}
+
+Status GdalSource::readStep(int step, int level, const core::Box3i& region, void* destination) const
+{
+    if (!_file) return {ErrorCode::VALUE_INVALID, "the voxel source has no file"};
+    if (region.empty()) return {};
+    if (step < 0 || step >= _layout.steps)
+        return VoxelSource::readStep(step < 1 ? 1 : step, level, region, destination);
+    if (level < 0 || level >= _levelCount)
+        return VoxelSource::readLevel(level < 1 ? 1 : level, region, destination);
+    const glm::ivec3 size = core::BrickTree::levelSize(_layout.description.size, level);
+    if (Status status = checkRegion(region, size); !status.ok()) return status;
+    try {
+        return readFrom(step, level, region, destination);
+    } catch (const std::exception& e) {
+        return {ErrorCode::FILE_UNREADABLE, _path + " cannot be read: " + e.what()};
+    }
+}
+
+Status GdalSource::readFrom(int step, int level, const core::Box3i& region, void* destination) const
+{
+    Fetch fetch[3];
+    bool even = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        fetch[axis] = fetchOf(_layout.axes[axis], region.min[axis], region.max[axis], level);
+        even = even && fetch[axis].places.empty();
+    }
+    const VoxelType type = _layout.description.type;
+    if (even && _layout.calibration.isPlain()) return readNumbers(step, fetch, type, destination);
+    // Slices together, as many as numbers of the file may take.
+    const glm::ivec3 size = region.size();
+    const std::size_t slice = std::size_t(fetch[0].count) * fetch[1].count * sizeof(double);
+    const int batch = int(std::clamp<std::size_t>(BATCH_BYTES / slice, 1, std::size_t(size.z)));
+    auto* to = static_cast<unsigned char*>(destination);
+    std::vector<double> samples, values;
+    for (int z = region.min.z; z < region.max.z; z += batch) {
+        const int end = std::min(z + batch, region.max.z);
+        fetch[2] = fetchOf(_layout.axes[2], z, end, level);
+        samples.resize(std::size_t(fetch[0].count) * fetch[1].count * fetch[2].count);
+        if (Status status = readNumbers(step, fetch, VoxelType::FLOAT64, samples.data());
+            !status.ok())
+            return status;
+        _layout.calibration.apply(samples.data(), samples.size());
+        const std::size_t count = std::size_t(size.x) * size.y * (end - z);
+        if (!even) {
+            values.resize(count);
+            interpolate(samples.data(), fetch, values.data());
+        }
+        core::convertVoxels(even ? samples.data() : values.data(), VoxelType::FLOAT64, to, type,
+                            count);
+        to += count * voxelTypeSize(type);
+    }
+    return {};
+}
+
+Status GdalSource::readNumbers(int step, const Fetch (&fetch)[3], VoxelType type,
+                               void* destination) const
+{
+    const Session session;
+    const GDALMDArray& array = *_file->variables()[_variable].array;
+    const std::size_t rank = array.GetDimensionCount();
+    std::vector<GUInt64> start(rank, 0);
+    std::vector<size_t> count(rank, 1);
+    std::vector<GInt64> stride(rank, 1);
+    std::vector<GPtrDiff_t> distance(rank, 1);
+    if (_layout.time >= 0) start[std::size_t(_layout.time)] = GUInt64(step);
+    const std::size_t apart[] = {1, std::size_t(fetch[0].count),
+                                 std::size_t(fetch[0].count) * fetch[1].count};
+    const auto take = [&](int axis, const Run& run) { // how far in what is read its first one is
+        if (const int dimension = _layout.axes[axis].dimension; dimension >= 0) {
+            const auto d = std::size_t(dimension);
+            start[d] = GUInt64(run.start);
+            count[d] = size_t(run.count);
+            stride[d] = run.stride;
+            distance[d] = GPtrDiff_t(apart[axis]);
+        }
+        return std::size_t(run.to) * apart[axis];
+    };
+    const auto as = GDALExtendedDataType::Create(gdalType(type));
+    for (const Run& z : fetch[2].runs)
+        for (const Run& y : fetch[1].runs)
+            for (const Run& x : fetch[0].runs) {
+                const std::size_t first = take(2, z) + take(1, y) + take(0, x);
+                if (!array.Read(start.data(), count.data(), stride.data(), distance.data(), as,
+                                static_cast<unsigned char*>(destination) +
+                                    first * voxelTypeSize(type)))
+                    return {ErrorCode::FILE_UNREADABLE,
+                            _path + ": " + oneLine(_file->variables()[_variable].path) +
+                                " cannot be read" + session.reason()};
+            }
+    return {};
+}
+
+} // namespace gdal
+} // namespace osgVolumizer
