@@ -23,6 +23,10 @@ CHART_PACKAGES="libgtest-dev libgl1-mesa-dri openscenegraph xvfb xauth python3"
 VTK_PACKAGES="libvtk9-dev"
 # The reader of HDF5 files; all goes without it.
 HDF5_PACKAGES="libhdf5-dev"
+# The reader of DICOM, NIfTI, NRRD, ..., with GDCM among what it depends on; all goes without it.
+ITK_PACKAGES="libinsighttoolkit5-dev"
+# Whose test files its tests read: nothing of Python itself is called.
+ITK_TEST_PACKAGES="python3-pydicom python3-nibabel"
 # The reader of NetCDF and Zarr; all goes without it.
 GDAL_PACKAGES="libgdal-dev"
 # The reader of OpenVDB grids; all goes without it.

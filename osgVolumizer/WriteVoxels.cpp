@@ -5,6 +5,7 @@
 #include "io/OiioTypes.h"
 #include "io/PageLayout.h"
 #include "io/PartFile.h"
+#include "io/PluginFile.h"
 
 #include <OpenImageIO/imageio.h>
 
@@ -76,6 +77,11 @@ Status writeVoxels(const VoxelSource& source, const std::string& fileName, const
 {
     if (Status status = source.describe().validate(); !status.ok()) return status;
     if (Status status = core::requireRegularTarget(fileName); !status.ok()) return status;
+    if (const auto writers = io::writersOf(fileName); !writers.empty()) {
+        Status status = io::writeByPlugin(writers, source, fileName);
+        if (status.ok() && progress) progress(1.0);
+        return status;
+    }
     try {
         OIIO::geterror();
         const auto out = OIIO::ImageOutput::create(fileName);

@@ -72,6 +72,8 @@ run_fuzz() {
 
 install_missing $BUILD_PACKAGES $TEST_PACKAGES || exit 1
 install_missing $HDF5_PACKAGES || echo "No HDF5: the reader of its files is left out." >&2
+install_missing $ITK_PACKAGES || echo "No ITK: the reader of DICOM and its like is left out." >&2
+install_missing $ITK_TEST_PACKAGES || exit 1
 install_missing $GDAL_PACKAGES || echo "No GDAL: the reader of NetCDF and Zarr is left out." >&2
 install_missing $OPENVDB_PACKAGES || echo "No OpenVDB: the reader of its grids is left out." >&2
 install_missing $VTK_PACKAGES || echo "No VTK: the readers of its files are left out." >&2

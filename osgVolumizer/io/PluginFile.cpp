@@ -113,9 +113,12 @@ std::vector<PluginFormat> pluginFormatsOf(FileKind kind)
 
 std::vector<PluginFormat> writersOf(const std::string& path)
 {
-    const FileKind kind = fileKindOf({}, path);
-    if (kind != FileKind::MEDICAL) return {};
-    return {MEDICAL};
+    const std::string name = osgDB::convertToLowerCase(path);
+    for (const std::string end : {".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha", ".mhd"})
+        if (name.size() > end.size() &&
+            name.compare(name.size() - end.size(), end.size(), end) == 0)
+            return {MEDICAL};
+    return {};
 }
 
 Result<Source> readByPlugin(const std::vector<PluginFormat>& formats, const VolumeRequest& request)

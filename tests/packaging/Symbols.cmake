@@ -19,7 +19,7 @@ endif()
 # Mangled names have the length of a name in front of it.
 foreach(symbol ${exported})
   # What plugins for formats are made of is for those of this library only.
-  if(symbol MATCHES "12osgVolumizer2io(12FormatPlugin|14VolumeContents|5place|7placeOf|7entryOf)")
+  if(symbol MATCHES "12osgVolumizer2io(12FormatPlugin|14VolumeContents|5place|7placeOf|7entryOf|10fileKindOf)")
     continue()
   endif()
   if(symbol MATCHES "12osgVolumizer(6render|2io|7picking|6Picker)")
