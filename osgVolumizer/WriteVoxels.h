@@ -19,5 +19,9 @@ namespace osgVolumizer {
 /// FILE_UNREADABLE (cannot be written).
 OSGVOLUMIZER_EXPORT Status writeVoxels(const VoxelSource& source, const std::string& fileName,
                                        const Progress& progress = {});
+/// The same of the voxels of an appearance, with the spacing and origin that they have now. Refuses
+/// (VALUE_INVALID) those without a source.
+OSGVOLUMIZER_EXPORT Status writeVoxels(const Voxels& voxels, const std::string& fileName,
+                                       const Progress& progress = {});
 
 } // namespace osgVolumizer

@@ -73,15 +73,17 @@ int fail(int code, const std::string& message)
     return code;
 }
 
-int write(const VoxelSource& source, const std::string& fileName, const Flags& flags)
+// Of voxels, or of a source of them.
+template <class Source>
+int write(const Source& voxels, const VoxelSource::Description& d, const std::string& fileName,
+          const Flags& flags)
 {
     Status status;
     {
         ProgressLine line("writing " + fileName, flags.quiet);
-        status = writeVoxels(source, fileName, std::ref(line));
+        status = writeVoxels(voxels, fileName, std::ref(line));
     }
     if (!status.ok()) return fail(FAILED, status.text);
-    const VoxelSource::Description d = source.describe();
     std::cout << fileName << ": " << core::formatTriple(d.size) << " voxels of "
               << (d.components == 4 ? "4 x " : "") << voxelTypeName(d.type) << '\n';
     return DONE;
@@ -115,7 +117,7 @@ int convert(const std::string& in, const std::string& out, const Flags& flags)
 {
     const Result<osg::ref_ptr<Voxels>> voxels = read(in, flags);
     if (!voxels.ok()) return fail(FAILED, voxels.status.text);
-    return write(*(*voxels)->getSource(), out, flags);
+    return write(**voxels, (*voxels)->getSource()->describe(), out, flags);
 }
 
 // A file that is written over is not gone on with.
@@ -169,7 +171,7 @@ int makeCubes(const std::vector<std::string>& arguments, VoxelType type, const F
     const glm::ivec3 size(static_cast<int>(numbers[0]), static_cast<int>(numbers[1]),
                           static_cast<int>(numbers[2]));
     osg::ref_ptr<Cubes> cubes = new Cubes(size, static_cast<int>(numbers[3]), type);
-    return write(*cubes, arguments[4], flags);
+    return write(*cubes, cubes->describe(), arguments[4], flags);
 }
 
 int stackToVolume(std::vector<std::string> arguments, const Flags& flags)
@@ -184,7 +186,7 @@ int stackToVolume(std::vector<std::string> arguments, const Flags& flags)
         voxels = readSlices(arguments, flags.loader, std::ref(line));
     }
     if (!voxels.ok()) return fail(FAILED, voxels.status.text);
-    return write(*(*voxels)->getSource(), out, flags);
+    return write(**voxels, (*voxels)->getSource()->describe(), out, flags);
 }
 
 } // namespace
