@@ -26,6 +26,20 @@ io::VolumeRequest requestOf(const std::string& path, const io::VoxelOptions& sai
     return request;
 }
 
+// What chooses one of several, where there is but one volume; `channels`: of those there may be
+// several, which is looked at later.
+Status refuseChoice(const std::string& path, const io::VoxelOptions& said, bool channels)
+{
+    if (said.dataset || said.dimensions)
+        return {ErrorCode::VALUE_INVALID,
+                path + " has one volume without a name: there is nothing to choose by option " +
+                    (said.dataset ? "dataset" : "dimensions")};
+    if (!channels && said.channel.value_or(0) > 0)
+        return {ErrorCode::INDEX_OUT_OF_RANGE,
+                path + " has no channel " + std::to_string(*said.channel) + ", but one"};
+    return {};
+}
+
 // Of one file or a Zarr folder.
 Result<io::Source> readFile(const std::string& path, const io::VoxelOptions& said,
                             const Progress& progress)
@@ -33,6 +47,8 @@ Result<io::Source> readFile(const std::string& path, const io::VoxelOptions& sai
     const io::FileKind kind = io::fileKindOf(path);
     if (const auto formats = io::pluginFormatsOf(kind); !formats.empty())
         return io::readByPlugin(formats, requestOf(path, said));
+    const bool image = kind == io::FileKind::IMAGE && !io::PyramidSource::isPyramid(path);
+    if (Status status = refuseChoice(path, said, image); !status.ok()) return status;
     if (kind == io::FileKind::NUMPY) return io::readNumpy(path, progress);
     if (io::PyramidSource::isPyramid(path)) return io::readPyramid(path);
     return io::readImage(path, said.channel, progress);
@@ -61,16 +77,28 @@ std::vector<io::PluginFormat> pluginsFor(const io::FoundVolume& found, const io:
     return io::pluginFormatsOf(io::fileKindOf(found.files.front()));
 }
 
+// Whether io::readImage() would be asked.
+bool isImage(const io::FoundVolume& found, const io::VoxelOptions& said)
+{
+    const std::string& file = found.files.front();
+    return !found.raw && !found.several && !said.series.value_or(false) &&
+           io::fileKindOf(file) == io::FileKind::IMAGE && !io::PyramidSource::isPyramid(file);
+}
+
 Result<io::Source> readFound(const io::FoundVolume& found, const io::VoxelOptions& said,
                              const Progress& progress)
 {
     if (said.series.value_or(false)) return readSeries(found, said);
-    if (found.raw) return io::readRaw(*found.raw, found.files.front(), progress);
+    if (found.raw) {
+        Status status = refuseChoice(found.files.front(), said, false);
+        return status.ok() ? io::readRaw(*found.raw, found.files.front(), progress) : status;
+    }
     if (!found.several) return readFile(found.files.front(), said, progress);
     io::VolumeRequest request;
     if (const auto formats = pluginsFor(found, said, request); !formats.empty())
         return io::readByPlugin(formats, request);
-    return io::readStack(found.files, progress);
+    if (Status status = refuseChoice(found.path, said, true); !status.ok()) return status;
+    return io::readStack(found.files, said.channel, progress);
 }
 
 Status apply(Voxels& voxels, const io::VoxelOptions& options)
@@ -162,6 +190,12 @@ Result<std::vector<VolumeEntry>> list(const std::string& name, const osgDB::Opti
     io::VolumeRequest request;
     if (const auto formats = pluginsFor(*found, *said, request); !formats.empty())
         return io::listByPlugin(formats, request);
+    if (isImage(*found, *said)) {
+        Result<VolumeEntry> image = io::listImage(found->files.front(), said->channel);
+        if (!image.ok()) return image.status;
+        image->chosen = true;
+        return std::vector<VolumeEntry>{*image};
+    }
     const Result<io::Source> source = readFound(*found, *said, {});
     if (!source.ok()) return source.status;
     VolumeEntry entry = io::entryOf(**source, "");

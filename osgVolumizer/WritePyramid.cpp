@@ -2,6 +2,7 @@
 
 #include "core/RegularFile.h"
 #include "core/voxels/VoxelData.h"
+#include "io/MovedSource.h"
 #include "io/OiioTypes.h"
 #include "io/PartFile.h"
 #include "io/PyramidSource.h"
@@ -371,6 +372,14 @@ Status writePyramid(const VoxelSource& source, const std::string& fileName,
     } catch (const std::exception& e) {
         return {ErrorCode::FILE_UNREADABLE, fileName + " cannot be written: " + e.what()};
     }
+}
+
+Status writePyramid(const Voxels& voxels, const std::string& fileName,
+                    const PyramidOptions& options, const Progress& progress)
+{
+    if (!voxels.valid()) return {ErrorCode::VALUE_INVALID, fileName + ": no voxels to write"};
+    const osg::ref_ptr<io::MovedSource> moved = new io::MovedSource(voxels);
+    return writePyramid(*moved, fileName, options, progress);
 }
 
 } // namespace osgVolumizer

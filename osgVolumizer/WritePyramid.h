@@ -26,5 +26,10 @@ struct PyramidOptions
 OSGVOLUMIZER_EXPORT Status writePyramid(const VoxelSource& source, const std::string& fileName,
                                         const PyramidOptions& options = {},
                                         const Progress& progress = {});
+/// The same of the voxels of an appearance, with the spacing and origin that they have now. Refuses
+/// (VALUE_INVALID) those without a source.
+OSGVOLUMIZER_EXPORT Status writePyramid(const Voxels& voxels, const std::string& fileName,
+                                        const PyramidOptions& options = {},
+                                        const Progress& progress = {});
 
 } // namespace osgVolumizer

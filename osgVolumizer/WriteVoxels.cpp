@@ -2,6 +2,7 @@
 
 #include "core/RegularFile.h"
 #include "core/voxels/VoxelData.h"
+#include "io/MovedSource.h"
 #include "io/OiioTypes.h"
 #include "io/PageLayout.h"
 #include "io/PartFile.h"
@@ -71,44 +72,12 @@ Status writeSlices(OIIO::ImageOutput& out, const VoxelSource& source, const std:
     return {};
 }
 
-/// A source whose samples lie elsewhere.
-class MovedSource : public VoxelSource
-{
-public:
-    META_Object(osgVolumizer, MovedSource);
-
-    MovedSource() = default;
-    MovedSource(const MovedSource& o, const osg::CopyOp& op = osg::CopyOp::SHALLOW_COPY)
-        : VoxelSource(o, op), _source(o._source), _description(o._description)
-    {
-    }
-    MovedSource(const VoxelSource* source, const osg::Vec3d& spacing, const osg::Vec3d& origin)
-        : _source(source), _description(source->describe())
-    {
-        _description.spacing = {spacing.x(), spacing.y(), spacing.z()};
-        _description.origin = {origin.x(), origin.y(), origin.z()};
-    }
-    Description describe() const override { return _description; }
-    Status read(const core::Box3i& region, void* destination) const override
-    {
-        return _source->read(region, destination);
-    }
-
-protected:
-    ~MovedSource() override = default;
-
-private:
-    osg::ref_ptr<const VoxelSource> _source;
-    Description _description;
-};
-
 } // namespace
 
 Status writeVoxels(const Voxels& voxels, const std::string& fileName, const Progress& progress)
 {
     if (!voxels.valid()) return {ErrorCode::VALUE_INVALID, fileName + ": no voxels to write"};
-    const osg::ref_ptr<MovedSource> moved =
-        new MovedSource(voxels.getSource(), voxels.getSpacing(), voxels.getOrigin());
+    const osg::ref_ptr<io::MovedSource> moved = new io::MovedSource(voxels);
     return writeVoxels(*moved, fileName, progress);
 }
 
@@ -124,7 +93,11 @@ Status writeVoxels(const VoxelSource& source, const std::string& fileName, const
     try {
         OIIO::geterror();
         const auto out = OIIO::ImageOutput::create(fileName);
-        if (!out) return {ErrorCode::NOT_SUPPORTED, fileName + ": " + oneLine(OIIO::geterror())};
+        if (!out)
+            return {ErrorCode::NOT_SUPPORTED,
+                    fileName +
+                        " is of no format that is written: .tif, .nrrd, .nhdr, .nii, .nii.gz, "
+                        ".mha, .mhd are, and images of several pages by OpenImageIO"};
         if (source.describe().size.z > 1 && !out->supports("appendsubimage"))
             return {ErrorCode::NOT_SUPPORTED,
                     fileName + ": the format \"" + out->format_name() + "\" cannot hold slices"};

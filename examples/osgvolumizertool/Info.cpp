@@ -35,24 +35,35 @@ struct Histogram
         const double place = (v - low) / (high - low) * BINS;
         ++counts[static_cast<std::size_t>(std::clamp(place, 0.0, BINS - 1.0))];
     }
-    void add(const VoxelBlock& block, const Voxels& voxels, const glm::ivec3& size)
+    /// A brick of a volume of `whole` samples, without those that the next ones have as well.
+    void add(const VoxelBlock& block, const Voxels& voxels, const core::Box3i& part, int overlap,
+             const glm::ivec3& whole)
     {
-        const core::VoxelView view{block.data, voxels.getType(), voxels.getComponents(), size};
+        const glm::ivec3 n = part.size();
+        const core::VoxelView view{block.data, voxels.getType(), voxels.getComponents(), n};
         const int alpha = voxels.getComponents() == 4 ? 3 : 0;
-        for (std::int64_t i = 0; i < core::sampleCount(size); ++i)
-            add(core::voxelValue(view, i, alpha));
+        glm::ivec3 own = n;
+        for (int axis = 0; axis < 3; ++axis)
+            if (part.max[axis] < whole[axis]) own[axis] -= overlap;
+        for (int z = 0; z < own.z; ++z)
+            for (int y = 0; y < own.y; ++y)
+                for (int x = 0; x < own.x; ++x)
+                    add(core::voxelValue(view, (std::int64_t(z) * n.y + y) * n.x + x, alpha));
     }
 };
 
-// Of paged voxels the finest level of at most so many samples.
-void addAll(const Voxels& voxels, Histogram& histogram)
+// Of paged voxels the finest level of at most so many samples; which one that is.
+Result<int> addAll(const Voxels& voxels, Histogram& histogram)
 {
     constexpr std::int64_t MOST = std::int64_t(1) << 26;
     if (!voxels.isPaged()) {
-        for (std::int64_t i = 0; i < voxels.getLayout().brickCount(); ++i)
-            if (const Voxels::Block block = voxels.getBrick(i))
-                histogram.add(block, voxels, voxels.getLayout().brick(i).samples.size());
-        return;
+        const core::BrickLayout& layout = voxels.getLayout();
+        for (std::int64_t i = 0; i < layout.brickCount(); ++i) {
+            const Result<VoxelBlock> block = voxels.readSamples(layout.brick(i).samples);
+            if (!block.ok()) return block.status;
+            histogram.add(*block, voxels, layout.brick(i).samples, layout.overlap(), layout.size());
+        }
+        return 0;
     }
     const core::BrickTree& tree = voxels.getTree();
     int level = 0;
@@ -60,9 +71,13 @@ void addAll(const Voxels& voxels, Histogram& histogram)
            core::sampleCount(tree.levelSize(tree.size(), level)) > MOST)
         ++level;
     for (std::int64_t i = tree.index(level, glm::ivec3(0)), end = i + tree.brickCount(level);
-         i < end; ++i)
-        if (const Result<VoxelBlock> block = voxels.readPage(i); block.ok())
-            histogram.add(*block, voxels, tree.brick(i).samples.size());
+         i < end; ++i) {
+        const Result<VoxelBlock> block = voxels.readPage(i);
+        if (!block.ok()) return block.status;
+        histogram.add(*block, voxels, tree.brick(i).samples, voxels.getOverlap(),
+                      tree.levelSize(tree.size(), level));
+    }
+    return level;
 }
 
 std::string bytesText(double bytes)
@@ -85,7 +100,7 @@ char letterOf(const osg::Vec3d& axis)
 
 std::string triple(const osg::Vec3d& v)
 {
-    return core::formatTriple(glm::dvec3(v.x(), v.y(), v.z()));
+    return core::formatTriple(glm::dvec3(v.x(), v.y(), v.z()) + 0.0); // no -0
 }
 
 void printPlace(std::ostream& out, const Voxels& voxels)
@@ -132,7 +147,7 @@ std::string typeText(VoxelType type, int components)
 
 } // namespace
 
-void printInfo(std::ostream& out, const Voxels& voxels)
+Status printInfo(std::ostream& out, const Voxels& voxels)
 {
     const osg::Vec3i n = voxels.getSize();
     const VoxelSource::Description d = voxels.getSource()->describe();
@@ -149,8 +164,9 @@ void printInfo(std::ostream& out, const Voxels& voxels)
     out << '\n';
     const osg::Vec2d range = voxels.getRange();
     Histogram histogram{range.x(), range.y()};
-    addAll(voxels, histogram);
-    out << "values       ";
+    const Result<int> level = addAll(voxels, histogram);
+    if (!level.ok()) return level.status;
+    out << "values       " << (*level ? "about " : "");
     if (histogram.lowest <= histogram.highest)
         out << core::formatNumber(histogram.lowest) << " to "
             << core::formatNumber(histogram.highest);
@@ -162,6 +178,7 @@ void printInfo(std::ostream& out, const Voxels& voxels)
         << histogram.samples << " samples" << (voxels.getComponents() == 4 ? ", alpha" : "")
         << '\n';
     printHistogram(out, histogram);
+    return {};
 }
 
 void printList(std::ostream& out, const std::vector<VolumeEntry>& entries)

@@ -100,8 +100,13 @@ int info(const std::vector<std::string>& arguments, const Flags& flags)
     if (arguments.size() != 1) return fail(USAGE, "info takes one VOLUME");
     const Result<osg::ref_ptr<Voxels>> voxels = read(arguments[0], flags);
     if (!voxels.ok()) return fail(FAILED, voxels.status.text);
-    printInfo(std::cout, **voxels);
-    return DONE;
+    const Result<std::vector<VolumeEntry>> entries = listVolumes(arguments[0], flags.loader);
+    for (const VolumeEntry& entry : entries.ok() ? *entries : std::vector<VolumeEntry>())
+        if (entry.chosen && !(entry.name + entry.text).empty())
+            std::cout << "volume       " << entry.name << (entry.name.empty() ? "" : "  ")
+                      << entry.text << '\n';
+    const Status status = printInfo(std::cout, **voxels);
+    return status.ok() ? DONE : fail(FAILED, status.text);
 }
 
 int list(const std::vector<std::string>& arguments, const Flags& flags)
@@ -117,6 +122,9 @@ int convert(const std::string& in, const std::string& out, const Flags& flags)
 {
     const Result<osg::ref_ptr<Voxels>> voxels = read(in, flags);
     if (!voxels.ok()) return fail(FAILED, voxels.status.text);
+    if ((*voxels)->getStepCount() > 1)
+        std::cerr << in << " has " << (*voxels)->getStepCount()
+                  << " time steps, of which the first is written\n";
     return write(**voxels, (*voxels)->getSource()->describe(), out, flags);
 }
 
@@ -145,15 +153,15 @@ int makePyramid(const std::vector<std::string>& arguments, const std::string& ru
     if (!voxels.ok()) return fail(FAILED, voxels.status.text);
     PyramidOptions options;
     options.rule = rule == "mode" ? core::LevelRule::MODE : core::LevelRule::MEAN;
-    options.origin = originOf(in);
-    const VoxelSource& source = *(*voxels)->getSource();
+    options.origin = originOf(in) + ", " + flags.loader->getOptionString();
     Status status;
     {
         ProgressLine line("writing " + out, flags.quiet);
-        status = writePyramid(source, out, options, std::ref(line));
+        status = writePyramid(**voxels, out, options, std::ref(line));
     }
     if (!status.ok()) return fail(FAILED, status.text);
-    std::cout << out << ": " << core::formatTriple(source.describe().size) << " voxels in levels\n";
+    std::cout << out << ": " << core::formatTriple((*voxels)->getSource()->describe().size)
+              << " voxels in levels\n";
     return DONE;
 }
 
@@ -202,7 +210,7 @@ int main(int argc, char** argv)
     for (std::size_t i = 0; i < arguments.size();) {
         const std::string option = arguments[i];
         if (option == "-O" && i + 1 < arguments.size()) {
-            flags.loader->setOptionString(arguments[i + 1]);
+            flags.loader->setOptionString(flags.loader->getOptionString() + " " + arguments[i + 1]);
             arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i),
                             arguments.begin() + static_cast<std::ptrdiff_t>(i) + 2);
             continue;

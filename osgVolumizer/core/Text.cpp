@@ -118,6 +118,14 @@ std::string formatNumber(double value)
     return std::string(buffer, result.ptr);
 }
 
+std::string formatNumbers(const double* values, int count)
+{
+    std::string text;
+    for (int i = 0; i < count; ++i)
+        text += (i ? "," : "") + formatNumber(values[i]);
+    return text;
+}
+
 std::string formatTriple(const glm::ivec3& v)
 {
     return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);

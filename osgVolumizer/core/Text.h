@@ -36,6 +36,8 @@ struct Option
 OSGVOLUMIZER_CORE_EXPORT std::vector<Option> splitOptions(std::string_view text);
 /// Writes as few digits as read back to the same number.
 OSGVOLUMIZER_CORE_EXPORT std::string formatNumber(double value);
+/// Between commas, as parseNumbers() reads them.
+OSGVOLUMIZER_CORE_EXPORT std::string formatNumbers(const double* values, int count);
 /// "x,y,z"
 OSGVOLUMIZER_CORE_EXPORT std::string formatTriple(const glm::ivec3& v);
 OSGVOLUMIZER_CORE_EXPORT std::string formatTriple(const glm::dvec3& v);

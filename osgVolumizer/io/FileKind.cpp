@@ -117,9 +117,11 @@ FileKind fileKindOf(std::string_view head, const std::string& path)
     if (isMetaImage(head)) return FileKind::MEDICAL;
     if (isVtkXml(head)) return FileKind::VTK;
     // OpenImageIO has formats of these names, too: Radiance pictures, Softimage PIC, ...
-    const bool isPicture = startsWith(head, "#?RADIANCE") || startsWith(head, "#?RGBE") ||
-                           startsWith(head, "\x53\x80\xf6\x34");
-    return isPicture ? FileKind::IMAGE : byName;
+    for (const std::string_view picture :
+         {"#?RADIANCE"sv, "#?RGBE"sv, "\x53\x80\xf6\x34"sv, "II*\0"sv, "MM\0*"sv, "II+\0"sv,
+          "MM\0+"sv, "\x89PNG"sv, "\xff\xd8\xff"sv, "\x76\x2f\x31\x01"sv})
+        if (startsWith(head, picture)) return FileKind::IMAGE;
+    return byName;
 }
 
 FileKind fileKindOf(const std::string& path)

@@ -74,7 +74,9 @@ Result<std::vector<VolumeEntry>> FormatPlugin::list(const VolumeRequest& request
 {
     const Result<Source> source = read(request);
     if (!source.ok()) return source.status;
-    return std::vector<VolumeEntry>{entryOf(**source, "")};
+    VolumeEntry entry = entryOf(**source, "");
+    entry.chosen = true;
+    return std::vector<VolumeEntry>{entry};
 }
 
 Status FormatPlugin::write(const VoxelSource&, const std::string& path) const

@@ -100,14 +100,15 @@ void toVoxels(const void* pixels, const PixelFormat& format, std::size_t count, 
     const std::size_t step = static_cast<std::size_t>(
         format.components == 4 ? 1 : format.channels); // RGBA: every channel for itself
     const int channels = format.components == 4 ? 1 : format.channels;
-    const double scale = std::ldexp(1.0, -format.shift);
+    const double scale = std::ldexp(1.0, -format.shift),
+                 highest = std::ldexp(1.0, 8 - format.shift) - 1.0;
     for (std::size_t done = 0; done < count; done += row.size()) {
         row.resize(std::min(row.size(), count - done));
         for (std::size_t i = 0; i < row.size(); ++i)
-            row[i] = brightness(from + (done + i) * step, channels) * scale;
-        if (format.shift)
+            row[i] = brightness(from + (done + i) * step, channels) * scale + format.offset;
+        if (format.shift || format.inverted)
             std::for_each(row.begin(), row.end(), [&](double& v) {
-                v = format.inverted ? 1.0 - std::floor(v) : std::floor(v);
+                v = format.inverted ? highest - std::floor(v) : std::floor(v);
             });
         core::convertVoxels(row.data(), VoxelType::FLOAT64,
                             static_cast<unsigned char*>(destination) + done * voxel, format.type,
@@ -136,6 +137,10 @@ Status ImageFile::open(const std::string& path)
     if (std::string(_input->format_name()) == "tiff") {
         std::ifstream file(path, std::ios::binary);
         _tags = TiffTags::read(file);
+        if (_tags.lostPage)
+            return {ErrorCode::FILE_UNREADABLE, path + " is cut short: page " +
+                                                    std::to_string(*_tags.lostPage) +
+                                                    " lies beyond its end"};
         // Where the standard says one bit for want of a number, it says eight.
         if (_tags.bitsPerSample == 1 && spec().get_int_attribute("oiio:BitsPerSample") != 1)
             return {ErrorCode::NOT_SUPPORTED,
@@ -186,7 +191,7 @@ Result<PixelFormat> ImageFile::pixelFormat(std::optional<int> channel) const
                                                     ", which is no voxel type");
     format.channel = channel;
     if (std::string(_input->format_name()) == "tiff") format.shift = widenedBits(spec(), _tags);
-    format.inverted = format.shift == 7 && _tags.minIsWhite;
+    format.inverted = spec().format == OIIO::TypeDesc::UINT8 && _tags.minIsWhite;
     if (channel && *channel >= spec().nchannels)
         return Status(ErrorCode::INDEX_OUT_OF_RANGE,
                       _path + " has no channel " + std::to_string(*channel) + ", but " +

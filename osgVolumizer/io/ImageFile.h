@@ -20,15 +20,16 @@ struct PixelFormat
     int first = 0;                               ///< of those that are read
     int channels = 1;                            ///< so many are read
     int shift = 0;         ///< bits that OpenImageIO has widened integers by: 1 bit to 8, 12 to 16
-    bool inverted = false; ///< by OpenImageIO: masks whose 0 is white
+    bool inverted = false; ///< by OpenImageIO: bytes whose 0 is white
+    double offset = 0.0;   ///< added to numbers as they are stored
     VoxelType type = VoxelType::UINT8;
     int components = 1;
 
     /// True where pixels are stored as they are read.
     bool direct() const
     {
-        return channels == components && shift == 0 && !inverted && read != OIIO::TypeDesc::INT64 &&
-               read != OIIO::TypeDesc::UINT64;
+        return channels == components && shift == 0 && !inverted && offset == 0.0 &&
+               read != OIIO::TypeDesc::INT64 && read != OIIO::TypeDesc::UINT64;
     }
     bool operator==(const PixelFormat& o) const
     {

@@ -1,6 +1,7 @@
 #include "ImageFile.h"
 #include "ImageSource.h"
 #include "PageLayout.h"
+#include "PluginFile.h"
 #include "TiffVolume.h"
 #include "VoxelFiles.h"
 
@@ -95,19 +96,44 @@ Result<int> countPages(ImageFile& file, const PixelFormat& format)
     return pages;
 }
 
-PageLayout layoutOf(const ImageFile& file, int pages)
+/// What there is in a file, and how what is asked for is read.
+struct Contents
 {
+    PixelFormat format;
+    int pages = 1;
+    PageLayout layout;
+};
+
+// Channels lie in pages, or side by side in pixels.
+Result<Contents> contentsOf(ImageFile& file, std::optional<int> channel)
+{
+    Contents contents;
+    Result<PixelFormat> format = file.pixelFormat();
+    if (!format.ok()) return format.status;
+    const Result<int> pages = file.size().z > 1 ? Result<int>(1) : countPages(file, *format);
+    if (!pages.ok()) return pages.status;
+    contents.pages = *pages;
     const OIIO::ImageSpec& spec = file.spec();
     PageLayout::File known;
-    known.pages = pages;
+    known.pages = *pages;
     known.samples = spec.nchannels;
     known.xResolution = spec.get_float_attribute("XResolution");
     known.yResolution = spec.get_float_attribute("YResolution");
-    PageLayout layout =
+    contents.layout =
         PageLayout::parse(spec.get_string_attribute("ImageDescription").c_str(), known);
-    for (const std::string& notice : layout.notices)
-        OSG_NOTICE << "osgVolumizer: " << file.path() << ": " << notice << std::endl;
-    return layout;
+    const int inPages = contents.layout.channels;
+    if (inPages > 1 && channel.value_or(0) >= inPages)
+        return Status(ErrorCode::INDEX_OUT_OF_RANGE, file.path() + " has no channel " +
+                                                         std::to_string(*channel) + ", but " +
+                                                         std::to_string(inPages) + ", from 0 on");
+    if (inPages == 1 && channel) format = file.pixelFormat(channel);
+    if (!format.ok()) return format.status;
+    contents.format = *format;
+    if (contents.layout.isSigned && format->type == VoxelType::UINT16) {
+        contents.format.type = VoxelType::INT16;
+        contents.format.offset = -32768.0;
+    }
+    return contents;
 }
 
 /// The slices of one channel at one time.
@@ -169,36 +195,56 @@ Result<Source> readImage(const std::string& path, std::optional<int> channel,
     Status status = file.open(path);
     if (status.code == ErrorCode::NOT_SUPPORTED) return readByLibtiff(path, channel);
     if (!status.ok()) return status;
-    // Without a channel: a first look, how many there are.
-    Result<PixelFormat> format = file.pixelFormat();
-    if (!format.ok()) return format.status;
-    const Result<int> pages = file.size().z > 1 ? Result<int>(1) : countPages(file, *format);
-    if (!pages.ok()) return pages.status;
-    const PageLayout layout = layoutOf(file, *pages);
-    const bool inPages = layout.channels > 1; // else side by side
-    if (inPages && channel.value_or(0) >= layout.channels)
-        return Status(ErrorCode::INDEX_OUT_OF_RANGE,
-                      path + " has no channel " + std::to_string(*channel) + ", but " +
-                          std::to_string(layout.channels) + ", from 0 on");
-    if (inPages && !channel)
+    const Result<Contents> found = contentsOf(file, channel);
+    if (!found.ok()) return found.status;
+    const PageLayout& layout = found->layout;
+    for (const std::string& notice : layout.notices)
+        OSG_NOTICE << "osgVolumizer: " << path << ": " << notice << std::endl;
+    if (layout.channels > 1 && !channel)
         OSG_NOTICE << "osgVolumizer: " << path << " has " << layout.channels
                    << " channels, of which the first is shown: channel=0 to " << layout.channels - 1
                    << " choose" << std::endl;
-    if (!inPages && channel) format = file.pixelFormat(channel);
-    if (!format.ok()) return format.status;
-    if (file.size().z > 1) return readDeep(file, *format, progress);
-    if (layout.single) return readSinglePage(path, layout, channel.value_or(0));
-    status = file.checkBytes(bytesOf(file, *format, *pages));
+    const int samples = file.spec().nchannels;
+    if (layout.channels == 1 && samples > 1 && !channel && found->format.channels == 1)
+        OSG_NOTICE << "osgVolumizer: " << path << " has " << samples
+                   << " channels, of which the first is shown: channel=0 to " << samples - 1
+                   << " choose" << std::endl;
+    if (file.size().z > 1) return readDeep(file, found->format, progress);
+    const int inPages = layout.channels > 1 ? channel.value_or(0) : 0;
+    if (layout.single) return readSinglePage(path, layout, inPages);
+    status = file.checkBytes(bytesOf(file, found->format, found->pages));
     if (!status.ok()) return status;
-    Pages first{path, describe(file, *format, layout.slices), *format, {}};
+    Pages first{path, describe(file, found->format, layout.slices), found->format, {}};
     first.description.spacing = layout.spacing;
     first.description.origin = layout.origin;
     first.description.axes = layout.axes;
     first.pages.resize(std::size_t(layout.slices));
-    return readSteps(first, layout, inPages ? channel.value_or(0) : 0, progress);
+    return readSteps(first, layout, inPages, progress);
 }
 
-Result<Source> readStack(const std::vector<std::string>& paths, const Progress& progress)
+Result<VolumeEntry> listImage(const std::string& path, std::optional<int> channel)
+{
+    ImageFile file;
+    Status status = file.open(path);
+    if (status.code == ErrorCode::NOT_SUPPORTED) {
+        const Result<Source> source = readByLibtiff(path, channel);
+        return source.ok() ? Result<VolumeEntry>(entryOf(**source, "")) : source.status;
+    }
+    if (!status.ok()) return status;
+    const Result<Contents> found = contentsOf(file, channel);
+    if (!found.ok()) return found.status;
+    const PageLayout& layout = found->layout;
+    VolumeEntry entry;
+    entry.size = {file.size().x, file.size().y, std::max(file.size().z, layout.slices)};
+    entry.type = found->format.type;
+    entry.channels = layout.channels > 1 ? layout.channels : file.spec().nchannels;
+    entry.steps = layout.steps;
+    if (!layout.unit.empty()) entry.text = "lengths in " + layout.unit;
+    return entry;
+}
+
+Result<Source> readStack(const std::vector<std::string>& paths, std::optional<int> channel,
+                         const Progress& progress)
 {
     Result<MemorySource> source(MemorySource{});
     PixelFormat format;
@@ -210,7 +256,7 @@ Result<Source> readStack(const std::vector<std::string>& paths, const Progress& 
         if (Status status = file.open(paths[static_cast<std::size_t>(z)]); !status.ok())
             return status;
         if (z == 0) {
-            const Result<PixelFormat> own = file.pixelFormat();
+            const Result<PixelFormat> own = file.pixelFormat(channel);
             if (!own.ok()) return own.status;
             format = *own;
             size = file.size();
@@ -222,6 +268,12 @@ Result<Source> readStack(const std::vector<std::string>& paths, const Progress& 
             if (!source.ok()) return source.status;
         }
         Status status = compare(file, file.path(), size, format, first);
+        if (status.ok() && file.seek(1)) {
+            status = {ErrorCode::SIZE_MISMATCH,
+                      file.path() + " has several pages, and is no single slice"};
+            if (z == 0) status.text += ": with series=on files are time steps";
+        }
+        if (status.ok()) file.seek(0);
         if (status.ok()) status = file.checkBytes(bytesOf(file, format, 1));
         if (status.ok()) status = file.readSlices(format, 0, sliceAt(*source, z));
         if (!status.ok()) return status;

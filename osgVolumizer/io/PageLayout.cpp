@@ -68,6 +68,13 @@ bool matches(const PageLayout& layout, std::int64_t pages)
            std::int64_t(layout.slices) * layout.channels * layout.steps == pages;
 }
 
+std::string mismatch(const PageLayout& said, int pages)
+{
+    return "it says that it has " + std::to_string(said.slices) + " slices, " +
+           std::to_string(said.channels) + " channels and " + std::to_string(said.steps) +
+           " time steps, but it has " + std::to_string(pages) + " pages, which are taken as slices";
+}
+
 // name=value, a line each.
 Attributes linesOf(std::string_view text)
 {
@@ -85,9 +92,7 @@ Attributes linesOf(std::string_view text)
 void setSpacing(PageLayout& layout, const glm::dvec3& spacing)
 {
     for (int i = 0; i < 3; ++i) {
-        if (!isSpacing(spacing[i])) continue;
-        layout.spacing[i] = spacing[i];
-        layout.placed = true;
+        if (isSpacing(spacing[i])) layout.spacing[i] = spacing[i];
     }
 }
 
@@ -101,9 +106,16 @@ void parseImageJ(const Attributes& values, const PageLayout::File& file, PageLay
     layout.single = file.pages == 1 && images > 1;
     const int there = layout.single ? images : file.pages;
     if (!matches(layout, there)) {
+        if (layout.channels > 1 || layout.steps > 1)
+            layout.notices.push_back(mismatch(layout, there));
         layout.channels = layout.steps = 1;
         layout.slices = there;
     }
+    const bool calibrated = values.count("c0") && values.count("c1");
+    layout.isSigned =
+        calibrated && numberOf(values, "c0") == -32768.0 && numberOf(values, "c1") == 1.0;
+    if (calibrated && !layout.isSigned)
+        layout.notices.push_back("its calibration of values is not applied");
     if (layout.channels > 1 || layout.steps > 1)
         for (int t = 0; t < layout.steps; ++t)
             for (int c = 0; c < layout.channels; ++c)
@@ -221,10 +233,7 @@ void parseOme(std::string_view xml, const PageLayout::File& file, PageLayout& la
         pages = pagesInOrder(layout, order);
         placePlanes(xml, at, layout, file.pages, pages);
     } else if (said.slices != file.pages) {
-        layout.notices.push_back("it says that it has " + std::to_string(said.slices) +
-                                 " slices, " + std::to_string(said.channels) + " channels and " +
-                                 std::to_string(said.steps) + " time steps, but it has " +
-                                 std::to_string(file.pages) + " pages, which are taken as slices");
+        layout.notices.push_back(mismatch(said, file.pages));
     }
 }
 
@@ -243,14 +252,6 @@ void parseOwn(const Attributes& values, PageLayout& layout)
     setSpacing(layout, spacing);
     layout.origin = origin;
     layout.axes = axes;
-}
-
-std::string numbers(const double* values, int count)
-{
-    std::string text;
-    for (int i = 0; i < count; ++i)
-        text += (i ? "," : "") + core::formatNumber(values[i]);
-    return text;
 }
 
 } // namespace
@@ -281,8 +282,9 @@ std::string PageLayout::text(const VoxelSource::Description& d)
     const std::string slices = std::to_string(d.size.z);
     return "ImageJ=1.11a\nimages=" + slices + "\nslices=" + slices +
            "\nspacing=" + core::formatNumber(d.spacing.z) + "\n" + OUR_SPACING + "=" +
-           numbers(&d.spacing.x, 3) + "\n" + OUR_ORIGIN + "=" + numbers(&d.origin.x, 3) + "\n" +
-           OUR_AXES + "=" + numbers(&d.axes[0].x, 9) + "\n";
+           core::formatNumbers(&d.spacing.x, 3) + "\n" + OUR_ORIGIN + "=" +
+           core::formatNumbers(&d.origin.x, 3) + "\n" + OUR_AXES + "=" +
+           core::formatNumbers(&d.axes[0].x, 9) + "\n";
 }
 
 } // namespace io

@@ -25,9 +25,9 @@ struct PageLayout
     int slices = 1, channels = 1, steps = 1;
     glm::dvec3 spacing{1.0}, origin{0.0};
     glm::dmat3 axes{1.0};
-    bool placed = false; ///< spacing, and maybe origin and axes, are known
-    std::string unit;    ///< of lengths: "micrometres", or as the file has it
-    bool single = false; ///< all pages lie behind the first one's pixels, without directories
+    std::string unit;      ///< of lengths: "micrometres", or as the file has it
+    bool isSigned = false; ///< 16 bits are numbers from -32768 on, as ImageJ stores them
+    bool single = false;   ///< all pages lie behind the first one's pixels, without directories
     std::vector<std::string> notices; ///< what a user may not expect, sentences without the file
 
     /// Which page it is.

@@ -15,14 +15,6 @@ namespace {
 
 const char* const MAGIC = "osgVolumizer pyramid";
 
-std::string numbers(const double* values, int count)
-{
-    std::string text;
-    for (int i = 0; i < count; ++i)
-        text += (i ? "," : "") + core::formatNumber(values[i]);
-    return text;
-}
-
 Status unreadable(const std::string& text)
 {
     return {ErrorCode::FILE_UNREADABLE, "the header of the pyramid " + text};
@@ -47,8 +39,9 @@ std::string PyramidFormat::text() const
     const VoxelSource::Description& d = description;
     return std::string(MAGIC) + " 1\nsize " + core::formatTriple(d.size) + "\ntype " +
            voxelTypeName(d.type) + "\ncomponents " + std::to_string(d.components) + "\nspacing " +
-           numbers(&d.spacing[0], 3) + "\norigin " + numbers(&d.origin[0], 3) + "\naxes " +
-           numbers(&d.axes[0][0], 9) + "\nrule " +
+           core::formatNumbers(&d.spacing[0], 3) + "\norigin " +
+           core::formatNumbers(&d.origin[0], 3) + "\naxes " +
+           core::formatNumbers(&d.axes[0][0], 9) + "\nrule " +
            (rule == core::LevelRule::MODE ? "mode" : "mean") + "\nfrom " + oneLine(origin);
 }
 

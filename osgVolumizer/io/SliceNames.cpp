@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 #include <map>
 
 namespace osgVolumizer {
@@ -60,6 +61,25 @@ Result<std::vector<std::string>> filesOf(const std::string& folder, bool deep)
         return Status(ErrorCode::FILE_UNREADABLE,
                       folder + " cannot be listed: " + failed.message());
     return names;
+}
+
+/// The file beside folders of DICOM that names what is in them.
+bool isDirectoryFile(const std::string& name)
+{
+    return osgDB::convertToLowerCase(name).compare(0, 8, "dicomdir") == 0;
+}
+
+/// Without the numbers beside headers: a.img beside a.hdr.
+std::vector<std::string> withoutPairs(std::vector<std::string> paths)
+{
+    const auto isHalf = [&paths](const std::string& path) {
+        const std::size_t img = path.rfind(".img");
+        return img != std::string::npos &&
+               std::find(paths.begin(), paths.end(), path.substr(0, img) + ".hdr") != paths.end();
+    };
+    std::vector<std::string> whole;
+    std::remove_copy_if(paths.begin(), paths.end(), std::back_inserter(whole), isHalf);
+    return whole;
 }
 
 /// A numbered pattern: prefix, digits, suffix.
@@ -179,19 +199,18 @@ Result<std::vector<std::string>> listFolder(const std::string& folder, bool volu
 {
     Result<std::vector<std::string>> names = filesOf(folder, false);
     if (!names.ok()) return names;
-    const bool wrapped = std::all_of(names->begin(), names->end(), [](const std::string& name) {
-        return osgDB::convertToLowerCase(name).compare(0, 8, "dicomdir") == 0;
-    });
+    const bool wrapped = std::all_of(names->begin(), names->end(), isDirectoryFile);
     if (wrapped) names = filesOf(folder, true);
     if (!names.ok()) return names;
     std::vector<std::string> images, bare, dicom, others;
     for (const std::string& name : *names) {
+        if (isDirectoryFile(fs::path(name).filename().string())) continue;
         const std::string path = (fs::path(folder) / name).string();
         const std::string extension = fs::path(name).extension().string();
         const FileKind kind = fileKindOf(path);
         if (kind == FileKind::DICOM)
             dicom.push_back(path);
-        else if (!pluginFormatsOf(kind).empty())
+        else if (kind != FileKind::IMAGE)
             others.push_back(path);
         else if (extension.empty())
             bare.push_back(path);
@@ -199,13 +218,18 @@ Result<std::vector<std::string>> listFolder(const std::string& folder, bool volu
             images.push_back(path);
     }
     if (!dicom.empty())
-        images = std::move(dicom);
+        images = dicom;
     else if (wrapped)
         images.clear(); // of other folders
-    if (images.empty() && volumes) images = std::move(others);
+    if (volumes && !others.empty() && dicom.empty()) images = withoutPairs(std::move(others));
     if (images.empty() && !wrapped) images = std::move(bare);
     if (images.empty())
-        return Status(ErrorCode::FILE_NOT_FOUND, "folder " + folder + " has no images");
+        return Status(ErrorCode::FILE_NOT_FOUND,
+                      "folder " + folder + " has no images" +
+                          (others.empty() ? ""
+                                          : ", but " + std::to_string(others.size()) +
+                                                " volumes: name one of them, or say series=on "
+                                                "where they are time steps"));
     std::sort(images.begin(), images.end(), naturalLess);
     return images;
 }

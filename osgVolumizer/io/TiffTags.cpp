@@ -8,7 +8,7 @@ namespace io {
 namespace {
 
 constexpr std::uint64_t BITS_PER_SAMPLE = 258, PHOTOMETRIC = 262, IMAGE_DEPTH = 32997;
-constexpr std::uint64_t MAXIMUM_ENTRIES = 4096; // of a directory
+constexpr std::uint64_t MAXIMUM_ENTRIES = 4096, MAXIMUM_PAGES = 1 << 20;
 
 /// Numbers of a file in its own byte order; 0 beyond its end.
 class Numbers
@@ -41,6 +41,8 @@ TiffTags TiffTags::read(std::istream& file)
     TiffTags tags;
     char order[2] = {};
     file.clear();
+    file.seekg(0, std::ios::end);
+    const auto bytes = static_cast<std::uint64_t>(std::max<std::streamoff>(file.tellg(), 0));
     file.seekg(0);
     if (!file.read(order, 2) || order[0] != order[1] || (order[0] != 'I' && order[0] != 'M'))
         return tags;
@@ -48,7 +50,7 @@ TiffTags TiffTags::read(std::istream& file)
     const std::uint64_t magic = numbers.at(2, 2);
     if (magic != 42 && magic != 43) return tags;
     const bool big = magic == 43;
-    const std::uint64_t directory = big ? numbers.at(8, 8) : numbers.at(4, 4);
+    std::uint64_t directory = big ? numbers.at(8, 8) : numbers.at(4, 4);
     const std::uint64_t entries = std::min(numbers.at(directory, big ? 8 : 2), MAXIMUM_ENTRIES);
     tags.bitsPerSample = 1;
     for (std::uint64_t i = 0; i < entries; ++i) {
@@ -59,8 +61,19 @@ TiffTags TiffTags::read(std::istream& file)
         const std::uint64_t number = numbers.at(value, isShort ? 2 : 4);
         if (tag == IMAGE_DEPTH) tags.imageDepth = std::max<std::uint64_t>(1, number);
         if (tag == PHOTOMETRIC) tags.minIsWhite = number == 0;
-        // Of several channels the numbers may lie elsewhere: those are whole bytes.
-        if (tag == BITS_PER_SAMPLE) tags.bitsPerSample = count > (big ? 4u : 2u) ? 8 : number;
+        // Of several channels the numbers may lie elsewhere.
+        const bool inPlace = count <= (big ? 4u : 2u);
+        if (tag == BITS_PER_SAMPLE)
+            tags.bitsPerSample = inPlace ? number : numbers.at(numbers.at(value, big ? 8 : 4), 2);
+    }
+    // A link to a directory beyond the end is what is left of a file that was cut short.
+    for (std::uint64_t page = 0; page < MAXIMUM_PAGES && directory; ++page) {
+        if (directory > bytes - std::min<std::uint64_t>(bytes, 2)) {
+            tags.lostPage = page;
+            break;
+        }
+        const std::uint64_t count = numbers.at(directory, big ? 8 : 2);
+        directory = numbers.at(directory + (big ? 8 + 20 * count : 2 + 12 * count), big ? 8 : 4);
     }
     return tags;
 }

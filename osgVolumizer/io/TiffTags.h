@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <istream>
+#include <optional>
 
 namespace osgVolumizer {
 namespace io {
@@ -15,6 +16,7 @@ struct TiffTags
     std::uint64_t imageDepth = 1;    ///< slices that a page holds (SGI's tag 32997)
     std::uint64_t bitsPerSample = 8; ///< before they are widened; 1 where there is no such tag
     bool minIsWhite = false;
+    std::optional<std::uint64_t> lostPage; ///< the first that is said to lie beyond the file's end
 
     /// OpenImageIO takes files with depth for their first slice alone.
     static OSGVOLUMIZER_EXPORT TiffTags read(std::istream& file);

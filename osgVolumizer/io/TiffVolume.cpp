@@ -9,6 +9,8 @@
 
 #include <tiffio.h>
 
+#include <glm/vector_relational.hpp>
+
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
@@ -231,7 +233,8 @@ Result<Source> readByLibtiff(const std::string& path, std::optional<int> channel
                                                          std::to_string(samples) + ", from 0 on");
     const glm::ivec3 tile(number(TIFFTAG_TILEWIDTH, 0), number(TIFFTAG_TILELENGTH, 0),
                           number(TIFFTAG_TILEDEPTH, 1));
-    if (!fits(tile, d.type, samples, path) || !fits(d.size, d.type, samples, path))
+    const bool larger = glm::any(glm::greaterThan(tile, d.size + 1024));
+    if (larger || !fits(tile, d.type, samples, path) || !fits(d.size, d.type, samples, path))
         return file.refuse("its sizes are wrong");
     MemorySource source = new MemoryVoxelSource;
     if (Status status = source->allocate(d); !status.ok())

@@ -27,13 +27,17 @@ Result<Source> readPyramid(const std::string& path);
 Result<Source> readImage(const std::string& path, std::optional<int> channel,
                          const Progress& progress);
 
+/// What readImage() would read, without reading pixels.
+Result<VolumeEntry> listImage(const std::string& path, std::optional<int> channel);
+
 /// The array of a NumPy file (.npy), of z,y,x or time,z,y,x, read as it is asked for: the last
 /// dimension is x where the order is C's, the first where it is Fortran's. NOT_SUPPORTED for
 /// numbers that no voxels are of.
 Result<Source> readNumpy(const std::string& path, const Progress& progress);
 
 /// The voxels of a stack of 2D images, one slice each, in this order.
-Result<Source> readStack(const std::vector<std::string>& paths, const Progress& progress);
+Result<Source> readStack(const std::vector<std::string>& paths, std::optional<int> channel,
+                         const Progress& progress);
 
 /// The images of a folder in natural order ("slice2" before "slice10"): DICOM files, where there
 /// are any; else those of the extensions that OpenImageIO knows, or, where there are none, those

@@ -101,6 +101,7 @@ Result<Layout> bigDataViewerLayout(hid_t file, const Wanted& wanted)
     if (Status status = checkLevel(*cells); !status.ok()) return status;
     Result<Layout> layout = layoutOf(file, *cells);
     if (!layout.ok()) return layout;
+    layout->channels = static_cast<int>(setups.size());
     // Java has no unsigned numbers: these are written as signed ones of the same bits.
     if (cells->type == VoxelType::INT16) layout->description.type = VoxelType::UINT16;
     std::vector<int> numbers{0};

@@ -28,6 +28,11 @@ double sampleCountOf(const Dataset& dataset)
     return count;
 }
 
+bool isVolume(const Dataset& dataset)
+{
+    return checkVolume(dataset).ok() && voxelSize(dataset, axesOf(dataset)->z).ok();
+}
+
 // The path of the largest volume.
 Result<std::string> findLargest(hid_t file)
 {
@@ -35,7 +40,7 @@ Result<std::string> findLargest(hid_t file)
     if (!datasets.ok()) return datasets.status;
     const Dataset* largest = nullptr;
     for (const Dataset& dataset : *datasets) {
-        if (!checkVolume(dataset).ok() || !voxelSize(dataset, axesOf(dataset)->z).ok()) continue;
+        if (!isVolume(dataset)) continue;
         if (!largest || sampleCountOf(dataset) > sampleCountOf(*largest)) largest = &dataset;
     }
     if (largest) return largest->path;
@@ -62,6 +67,16 @@ Result<std::string> findNamed(hid_t file, const std::string& name)
 }
 
 } // namespace
+
+Result<std::vector<Dataset>> volumesOf(hid_t file)
+{
+    Result<std::vector<Dataset>> datasets = listDatasets(file);
+    if (!datasets.ok()) return datasets;
+    datasets->erase(std::remove_if(datasets->begin(), datasets->end(),
+                                   [](const Dataset& d) { return !isVolume(d); }),
+                    datasets->end());
+    return datasets;
+}
 
 Result<Layout> datasetLayout(hid_t file, const Wanted& wanted)
 {

@@ -105,6 +105,35 @@ Status Hdf5Source::open(const std::string& path, const Wanted& wanted)
     return {};
 }
 
+Result<std::vector<VolumeEntry>> Hdf5Source::list() const
+{
+    const Session session;
+    VolumeEntry own;
+    const glm::ivec3 size = _layout.description.size;
+    own.size = {size.x, size.y, size.z};
+    own.type = _layout.description.type;
+    own.channels = _layout.channels;
+    own.steps = _layout.steps;
+    own.chosen = true;
+    if (isImaris(_file->id()) || isBigDataViewer(_file->id())) return std::vector<VolumeEntry>{own};
+    const Result<std::vector<Dataset>> datasets = volumesOf(_file->id());
+    if (!datasets.ok()) return Status(datasets.status.code, _path + ": " + datasets.status.text);
+    std::vector<VolumeEntry> entries;
+    for (const Dataset& dataset : *datasets) {
+        const Result<Layout> layout = datasetLayout(_file->id(), {dataset.path, {}});
+        if (!layout.ok()) continue;
+        VolumeEntry entry = own;
+        const glm::ivec3& n = layout->description.size;
+        entry.name = dataset.path;
+        entry.size = {n.x, n.y, n.z};
+        entry.type = layout->description.type;
+        entry.steps = layout->steps;
+        entry.chosen = _layout.pathOf(0, 0) == dataset.path;
+        entries.push_back(entry);
+    }
+    return entries;
+}
+
 Status Hdf5Source::readStep(int step, int level, const core::Box3i& region, void* destination) const
 {
     if (!_file) return {ErrorCode::VALUE_INVALID, "the voxel source has no file"};

@@ -2,6 +2,7 @@
 
 #include "Layout.h"
 
+#include <osgVolumizer/ReadVoxels.h>
 #include <osgVolumizer/VoxelSource.h>
 
 #include <memory>
@@ -37,6 +38,9 @@ public:
     {
         return readStep(0, 0, region, destination);
     }
+    /// What else could have been chosen: the volumes in the file, this one marked. Of Imaris and
+    /// BigDataViewer one, with its channels.
+    Result<std::vector<VolumeEntry>> list() const;
     int levelCount() const override { return _levelCount; }
     Status readLevel(int level, const core::Box3i& region, void* destination) const override
     {

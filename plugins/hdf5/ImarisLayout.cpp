@@ -118,6 +118,7 @@ Result<Layout> imarisLayout(hid_t file, const Wanted& wanted)
     if (Status status = checkLevel(*data); !status.ok()) return status;
     Result<Layout> layout = layoutOf(file, *data);
     if (!layout.ok()) return layout;
+    layout->channels = static_cast<int>(channels.size());
     const Result<glm::ivec3> size = sizeOf(file, 0, channel, *data);
     if (!size.ok()) return size.status;
     layout->description.size = layout->levels[0].size = *size;

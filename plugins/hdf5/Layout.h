@@ -33,6 +33,7 @@ struct Layout
     VoxelType readAs = VoxelType::UINT8; ///< as the library converts them; of the same size
     std::vector<FileLevel> levels;       ///< the volume first
     int steps = 1;
+    int channels = 1;
     Axes axes; ///< of all datasets
     std::function<std::string(int step, int fileLevel)> pathOf;
     std::vector<std::string> notices; ///< what a user may not expect, sentences without the file
@@ -49,6 +50,8 @@ bool isBigDataViewer(hid_t file);
 Result<Layout> bigDataViewerLayout(hid_t file, const Wanted& wanted);
 /// Any other: a dataset, the one wanted or the largest that is a volume.
 Result<Layout> datasetLayout(hid_t file, const Wanted& wanted);
+/// All datasets that are volumes. Expects a Session.
+Result<std::vector<Dataset>> volumesOf(hid_t file);
 /// Whichever it is. Texts of failures lack the name of the file. Expects a Session.
 Result<Layout> findLayout(hid_t file, const Wanted& wanted);
 

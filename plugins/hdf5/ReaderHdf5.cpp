@@ -19,11 +19,17 @@ public:
 protected:
     Result<io::Source> read(const io::VolumeRequest& request) const override
     {
-        osg::ref_ptr<Hdf5Source> source = new Hdf5Source;
-        if (Status status = source->open(request.path, {request.dataset, request.channel});
-            !status.ok())
-            return status;
+        const osg::ref_ptr<Hdf5Source> source = new Hdf5Source;
+        Status status = source->open(request.path, {request.dataset, request.channel});
+        if (!status.ok()) return status;
         return io::Source(source);
+    }
+    Result<std::vector<VolumeEntry>> list(const io::VolumeRequest& request) const override
+    {
+        const osg::ref_ptr<Hdf5Source> source = new Hdf5Source;
+        Status status = source->open(request.path, {request.dataset, request.channel});
+        if (!status.ok()) return status;
+        return source->list();
     }
 };
 

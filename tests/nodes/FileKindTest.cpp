@@ -58,6 +58,7 @@ TEST(FileKind, TheNameDecidesWhereTheBeginningSaysNothing)
         {"scan_h5", FileKind::IMAGE},     {"x.raw", FileKind::IMAGE}};
     for (const auto& [name, kind] : names)
         EXPECT_EQ(kind, fileKindOf({}, name)) << name;
+    EXPECT_EQ(FileKind::IMAGE, fileKindOf(std::string("II*\0\10\0\0\0", 8), "x.dcm"));
     // Both say something: NetCDF-4 is HDF5 inside, and Radiance has pictures of this name.
     EXPECT_EQ(FileKind::NETCDF, fileKindOf("\x89HDF\r\n\x1a\n...", "x.nc"));
     EXPECT_EQ(FileKind::IMAGE, fileKindOf("#?RADIANCE\n", "x.hdr"));

@@ -109,6 +109,9 @@ TEST_F(MicroscopeTiff, ImageJSaysHowFarSlicesAreApart)
     expectSpacing({0.5, 0.5, 2.5}, *read(write("a.tif", 3, start + "unit=um\nspacing=2.5\n", 2)));
     expectSpacing({0.5, 0.5, 2.5},
                   *read(write("b.tif", 3, start + "unit=\\u00B5m\nspacing=2.5\n", 2)));
+    const auto listed = listVolumes(path("b.tif"));
+    ASSERT_TRUE(listed.ok()) << listed.status.text;
+    EXPECT_EQ("lengths in micrometres", listed->front().text);
     expectSpacing({500, 500, 2500}, *read(write("c.tif", 3, start + "unit=mm\nspacing=2.5\n", 2)));
     expectSpacing({0.5, 0.5, 2.5}, *read(write("d.tif", 3, start + "spacing=2.5\n", 2)));
     expectSpacing({1, 1, 1}, *read(write("e.tif", 3, start)));
@@ -122,6 +125,10 @@ TEST_F(MicroscopeTiff, ChannelsAndTimeStepsOfImageJAreNoSlices)
         write("c.tif", 6, "ImageJ=1.11a\nimages=6\nchannels=2\nslices=3\nhyperstack=true\n");
     EXPECT_EQ((Pages{0, 2, 4}), pagesOf(*read(channels)));
     EXPECT_EQ((Pages{1, 3, 5}), pagesOf(*read(channels, "channel=1")));
+    const auto listed = listVolumes(channels);
+    ASSERT_TRUE(listed.ok()) << listed.status.text;
+    EXPECT_EQ(2, listed->front().channels);
+    EXPECT_EQ(3, listed->front().size.z());
     const osg::ref_ptr<osgDB::Options> third = new osgDB::Options("channel=2");
     const Status status = readVoxels(channels, third.get()).status;
     EXPECT_EQ(ErrorCode::INDEX_OUT_OF_RANGE, status.code);
@@ -205,6 +212,51 @@ TEST_F(MicroscopeTiff, BitsAreZeroAndOne)
             for (std::size_t i = 0; i < 320; ++i)
                 ASSERT_EQ(i % 2, block.data[i]) << i << " " << photometric << " " << told;
         }
+}
+
+TEST_F(MicroscopeTiff, ChannelsOfAnyWidthKeepTheirValues)
+{
+    for (const int channels : {2, 3, 4, 5}) {
+        OIIO::ImageSpec spec(4, 3, channels, OIIO::TypeDesc::UINT16);
+        std::vector<std::uint16_t> pixels(std::size_t(12 * channels));
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            pixels[i] = static_cast<std::uint16_t>(1000 * i + 7);
+        const auto out = OIIO::ImageOutput::create(path("c.tif"));
+        ASSERT_TRUE(out->open(path("c.tif"), spec));
+        ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT16, pixels.data()));
+        out->close();
+        for (int c = 0; c < channels; ++c) {
+            const osg::ref_ptr<Voxels> voxels = read(path("c.tif"), "channel=" + std::to_string(c));
+            ASSERT_EQ(VoxelType::UINT16, voxels->getType());
+            std::vector<std::uint16_t> values(12), expected;
+            ASSERT_TRUE(voxels->getSource()->read({{0, 0, 0}, {4, 3, 1}}, values.data()).ok());
+            for (int i = 0; i < 12; ++i)
+                expected.push_back(pixels[std::size_t(i * channels + c)]);
+            EXPECT_EQ(expected, values) << channels << " " << c;
+        }
+    }
+}
+
+TEST_F(MicroscopeTiff, WhatIsCutShortIsRefused)
+{
+    const std::string file = write("a.tif", 12, "");
+    for (const double share : {0.5, 0.8, 0.95}) {
+        std::filesystem::copy_file(file, path("cut.tif"),
+                                   std::filesystem::copy_options::overwrite_existing);
+        std::filesystem::resize_file(
+            path("cut.tif"), std::uintmax_t(share * double(std::filesystem::file_size(file))));
+        EXPECT_EQ(ErrorCode::FILE_UNREADABLE, readVoxels(path("cut.tif")).status.code) << share;
+    }
+}
+
+TEST_F(MicroscopeTiff, SixteenBitsOfImageJMayBeSigned)
+{
+    const osg::ref_ptr<Voxels> voxels =
+        read(write("s.tif", 3, "ImageJ=1.53t\nimages=3\nslices=3\ncf=0\nc0=-32768\nc1=1\n"));
+    ASSERT_EQ(VoxelType::INT16, voxels->getType());
+    std::int16_t value = 0;
+    ASSERT_TRUE(voxels->getSource()->read({{0, 0, 2}, {1, 1, 3}}, &value).ok());
+    EXPECT_EQ(200 - 32768, value);
 }
 
 TEST_F(MicroscopeTiff, FilesLargerThanTheirShareOfMemoryAreReadAsTheyAreAskedFor)

@@ -372,6 +372,23 @@ TEST_F(ReadVoxels, FilesAreListed)
               listVolumes(file, optionString("channel=x").get()).status.code);
 }
 
+TEST_F(ReadVoxels, WhatThereIsNothingToChooseByIsRefused)
+{
+    const std::string file = writeBytes("v.raw", std::string(64, 'x')) + ".4,4,4,uint8";
+    EXPECT_EQ(ErrorCode::VALUE_INVALID, statusOf(file, "dataset=a").code);
+    EXPECT_EQ(ErrorCode::VALUE_INVALID, statusOf(file, "dimensions=x,y,z").code);
+    EXPECT_EQ(ErrorCode::INDEX_OUT_OF_RANGE, statusOf(file, "channel=1").code);
+    const auto first = readVoxels(file, optionString("channel=0").get());
+    EXPECT_TRUE(first.ok()) << first.status.text;
+    const OIIO::ImageSpec spec(4, 3, 3, OIIO::TypeDesc::UINT8);
+    for (const char* name : {"s1.png", "s2.png"})
+        writeImage<std::uint8_t>(name, spec, 10);
+    const auto green = readVoxels(path("s#.png"), optionString("channel=1").get());
+    ASSERT_TRUE(green.ok()) << green.status.text;
+    EXPECT_EQ(11, values<std::uint8_t>(**green)[0]);
+    EXPECT_EQ(ErrorCode::VALUE_INVALID, statusOf(path("s#.png"), "dataset=a").code);
+}
+
 TEST_F(ReadVoxels, OptionsOfOthersAreLeftToThem)
 {
     const std::string file = writeBytes("v.raw", std::string(64, 'x')) + ".4,4,4,uint8";

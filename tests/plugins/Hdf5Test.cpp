@@ -217,6 +217,12 @@ TEST_F(Hdf5, TheLargestVolumeOrTheOneThatIsNamed)
     EXPECT_EQ(sizeBy(""), glm::ivec3(5, 4, 3));
     EXPECT_EQ(sizeBy("dataset=\"/b/large volume\""), glm::ivec3(5, 4, 3));
     EXPECT_EQ(sizeBy("dataset=a/small"), glm::ivec3(4, 3, 2));
+    const auto listed = listVolumes(path("many.h5"));
+    ASSERT_TRUE(listed.ok()) << listed.status.text;
+    std::vector<std::string> names;
+    for (const VolumeEntry& entry : *listed)
+        names.push_back((entry.chosen ? "*" : "") + entry.name);
+    EXPECT_EQ((std::vector<std::string>{"/a/small", "*/b/large volume", "/channels"}), names);
     // Axes of one sample in front and behind are no time and no volume.
     const auto channels = open("many.h5", "dataset=/channels");
     ASSERT_TRUE(channels);
