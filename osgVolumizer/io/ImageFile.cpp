@@ -138,7 +138,8 @@ Status ImageFile::open(const std::string& path)
         std::ifstream file(path, std::ios::binary);
         _tags = TiffTags::read(file);
         if (_tags.lostPage)
-            return {ErrorCode::FILE_UNREADABLE, path + " is cut short: page " +
+            return {ErrorCode::FILE_UNREADABLE, path + ", of " + std::to_string(fileBytes(path)) +
+                                                    " bytes, is cut short: page " +
                                                     std::to_string(*_tags.lostPage) +
                                                     " lies beyond its end"};
         // Where the standard says one bit for want of a number, it says eight.

@@ -68,12 +68,13 @@ TiffTags TiffTags::read(std::istream& file)
     }
     // A link to a directory beyond the end is what is left of a file that was cut short.
     for (std::uint64_t page = 0; page < MAXIMUM_PAGES && directory; ++page) {
-        if (directory > bytes - std::min<std::uint64_t>(bytes, 2)) {
+        const std::uint64_t count = std::min(numbers.at(directory, big ? 8 : 2), MAXIMUM_ENTRIES);
+        const std::uint64_t link = (big ? 8 + 20 * count : 2 + 12 * count), size = big ? 8 : 4;
+        if (directory > bytes || link + size > bytes - directory) {
             tags.lostPage = page;
             break;
         }
-        const std::uint64_t count = numbers.at(directory, big ? 8 : 2);
-        directory = numbers.at(directory + (big ? 8 + 20 * count : 2 + 12 * count), big ? 8 : 4);
+        directory = numbers.at(directory + link, static_cast<int>(size));
     }
     return tags;
 }
