@@ -129,6 +129,16 @@ void calibrate(const gdcm::DataSet& set, DicomFile& file)
     if (file.modality == "PT") file.pet = petDoseOf(set);
 }
 
+// Whether decoded values may be others than were encoded.
+bool isLossy(const Elements& elements, const DicomFile& file)
+{
+    if (elements.text(Tag(0x0028, 0x2110)) == "01") return true;
+    const std::string family = "1.2.840.10008.1.2.4.";
+    for (const char* end : {"50", "51", "81", "91"})
+        if (file.syntax == family + end) return true;
+    return false;
+}
+
 // Of pixels that are no part of the picture.
 void readPadding(const Elements& elements, DicomFile& file)
 {
@@ -140,8 +150,10 @@ void readPadding(const Elements& elements, DicomFile& file)
     };
     const std::optional<double> value = numberAt(Tag(0x0028, 0x0120));
     if (!value) return;
-    const double limit = numberAt(Tag(0x0028, 0x0121)).value_or(*value);
-    file.padding = {std::min(*value, limit), std::max(*value, limit)};
+    const std::optional<double> limit = numberAt(Tag(0x0028, 0x0121));
+    if (!limit && isLossy(elements, file)) return; // only near the value
+    const double other = limit.value_or(*value);
+    file.padding = {std::min(*value, other), std::max(*value, other)};
 }
 
 // Which pictures of a segmentation can be read: those of bits, a segment each.

@@ -61,7 +61,7 @@ std::string valueOf(std::string_view line)
     return std::string(value);
 }
 
-std::string lower(std::string_view text)
+std::string lowered(std::string_view text)
 {
     return osgDB::convertToLowerCase(std::string(text));
 }
@@ -90,7 +90,7 @@ double millimetresOf(const std::string& unit)
         {"metre", 1000.0},    {"um", 1e-3},         {"\xc2\xb5m", 1e-3},  {"\xce\xbcm", 1e-3},
         {"micron", 1e-3},     {"micrometer", 1e-3}, {"micrometre", 1e-3}, {"nm", 1e-6},
         {"nanometer", 1e-6},  {"nanometre", 1e-6},  {"angstrom", 1e-7}};
-    std::string name = lower(unit);
+    std::string name = lowered(unit);
     for (const Unit& known : UNITS)
         if (name == known.name || name == std::string(known.name) + 's') return known.millimetres;
     return 0.0;
@@ -116,14 +116,14 @@ Storage storageOfText(const std::string& path, const std::string& head)
     bool hasUnits = false;
     for (const std::string_view line : core::splitText(head, '\n')) {
         const auto is = [line](std::string_view field) {
-            return lower(line.substr(0, field.size())) == lower(field);
+            return lowered(line.substr(0, field.size())) == lowered(field);
         };
         if (line.empty()) break; // data of NRRD begin
         const std::string value = valueOf(line);
         if (is("encoding:")) storage.packed = value != "raw";
         if (is("CompressedData"))
             storage.packed = value == "True" || value == "true" || value == "1";
-        if (is("space:")) storage.turn *= turnOf(lower(value));
+        if (is("space:")) storage.turn *= turnOf(lowered(value));
         const bool spaceUnits = is("space units:") || is("spaceunits:");
         if ((spaceUnits || is("units:")) && !hasUnits) {
             storage.turn *= millimetresOfAll(value);

@@ -48,7 +48,7 @@ std::optional<std::int64_t> dayOf(const std::string& date)
 }
 
 /// Seconds from `a` to `b`, by their days where both have one.
-double between(const DicomMoment& a, const DicomMoment& b)
+double secondsBetween(const DicomMoment& a, const DicomMoment& b)
 {
     const double seconds = *b.second - *a.second;
     return a.day && b.day ? SECONDS_OF_DAY * double(*b.day - *a.day) + seconds : seconds;
@@ -61,8 +61,8 @@ DicomMoment scanOf(const std::vector<const DicomFile*>& files)
     for (const DicomFile* file : files) {
         const DicomMoment& acquired = file->pet->acquired;
         if (!acquired.second) continue;
-        if (!scan.second ||
-            (acquired.day.has_value() == scan.day.has_value() && between(scan, acquired) < 0.0))
+        if (!scan.second || (acquired.day.has_value() == scan.day.has_value() &&
+                             secondsBetween(scan, acquired) < 0.0))
             scan = acquired;
     }
     return scan;
@@ -77,7 +77,7 @@ std::optional<double> scaleAt(const PetDose& pet, const DicomMoment& scan, std::
     if (!(pet.halfLife > 0.0)) return pet.scale;
     reason = "the times of injection and scan are not known";
     if (!pet.given.second || !scan.second) return std::nullopt;
-    double seconds = between(pet.given, scan);
+    double seconds = secondsBetween(pet.given, scan);
     const bool dated = pet.given.day && scan.day;
     if (!dated && seconds < 0.0) seconds += SECONDS_OF_DAY; // past midnight
     reason = "the scan is earlier than the injection";

@@ -653,8 +653,13 @@ TEST_F(Dicom, PaddingIsTheLowestOfWhatIsNone)
     EXPECT_EQ(std::vector<double>(both.begin(), both.begin() + 4),
               (std::vector<double>{-990, -990, -990, -980}));
     EXPECT_EQ(both[11], 63999);
+    // Where values were changed by compression, one is not enough.
+    file.text(0x00282110, "CS", "01");
+    file.elements.erase(0x00280121);
+    file.setValues(std::vector<int>(12, 65000));
+    EXPECT_EQ(read(write("c.dcm"), VoxelType::UINT16)[0], 64000);
     // Nothing else.
-    file.setValues(std::vector<int>(12, 65535));
+    file.text(0x00282110, "CS", "");
     EXPECT_EQ(read(write("b.dcm"), VoxelType::UINT16), std::vector<double>(12, 0.0));
 }
 
