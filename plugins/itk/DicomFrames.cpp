@@ -56,12 +56,23 @@ void applyRescale(const Elements& e, DicomFrame& frame)
     if (const auto intercept = e.decimal(Tag(0x0028, 0x1052))) frame.intercept = *intercept;
 }
 
+// Seconds since some day; 0 where it is not said.
+double acquiredAt(const Elements& e)
+{
+    DicomMoment moment = DicomMoment::of(e.text(Tag(0x0008, 0x002a)));
+    if (!moment.second)
+        moment = DicomMoment::of(e.text(Tag(0x0008, 0x0022)), e.text(Tag(0x0008, 0x0032)));
+    return moment.second ? 86400.0 * double(moment.day.value_or(0)) + *moment.second : 0.0;
+}
+
 void applyOrder(const Elements& e, DicomFrame& frame)
 {
-    frame.order = {
-        e.decimal(Tag(0x0020, 0x0100)).value_or(0.0), e.decimal(Tag(0x0018, 0x1060)).value_or(0.0),
-        e.decimal(Tag(0x0018, 0x0081)).value_or(0.0), e.decimal(Tag(0x0020, 0x0012)).value_or(0.0),
-        e.decimal(Tag(0x0020, 0x0013)).value_or(0.0)};
+    frame.order = {e.decimal(Tag(0x0020, 0x0100)).value_or(0.0),
+                   e.decimal(Tag(0x0018, 0x1060)).value_or(0.0),
+                   e.decimal(Tag(0x0018, 0x0081)).value_or(0.0),
+                   e.decimal(Tag(0x0020, 0x0012)).value_or(0.0),
+                   acquiredAt(e),
+                   e.decimal(Tag(0x0020, 0x0013)).value_or(0.0)};
 }
 
 // The functional groups of an enhanced file: what all frames share, or one has.
@@ -76,6 +87,32 @@ void applyGroups(const gdcm::DataSet& groups, DicomFrame& frame)
         const Elements content(*item);
         frame.order[0] = content.longWord(Tag(0x0020, 0x9128)).value_or(0); // temporal position
     }
+    if (const auto item = e.item(Tag(0x0062, 0x000a)))
+        frame.segment = Elements(*item).word(Tag(0x0062, 0x000b)).value_or(0);
+}
+
+// Frames without a place of their own: one above the other, as far as nothing else is said. Of
+// nuclear medicine the spacing can be negative, and which slice a frame is of can be told.
+void stack(const Elements& e, std::vector<DicomFrame>& frames)
+{
+    const double thickness = frames.front().thickness > 0.0 ? frames.front().thickness : 1.0;
+    const bool backwards = e.decimal(Tag(0x0018, 0x0088)).value_or(0.0) < 0.0;
+    const std::vector<unsigned> slices = e.words(Tag(0x0054, 0x0080));
+    for (DicomFrame& frame : frames) {
+        const std::size_t i = static_cast<std::size_t>(frame.frame);
+        const double index =
+            slices.size() == frames.size() && slices[i] > 0 ? slices[i] - 1.0 : double(i);
+        frame.position += (backwards ? -index : index) * thickness * frame.normal();
+    }
+}
+
+// Of nuclear medicine, the first detector's.
+void applyDetector(const Elements& e, DicomFrame& frame)
+{
+    const auto item = e.item(Tag(0x0054, 0x0022));
+    if (!item || e.has(Tag(0x0020, 0x0032))) return;
+    applyPosition(Elements(*item), frame);
+    if (!e.has(Tag(0x0020, 0x0037))) applyOrientation(Elements(*item), frame);
 }
 
 // The frames of a dose: z from GridFrameOffsetVector, relative or absolute.
@@ -108,6 +145,7 @@ std::vector<DicomFrame> dicomFramesOf(const gdcm::DataSet& set, int count, const
     applyMeasures(e, first);
     applyOrientation(e, first);
     applyPosition(e, first);
+    applyDetector(e, first);
     applyRescale(e, first);
     applyOrder(e, first);
     if (const auto shared = e.item(Tag(0x5200, 0x9229))) applyGroups(*shared, first);
@@ -120,11 +158,12 @@ std::vector<DicomFrame> dicomFramesOf(const gdcm::DataSet& set, int count, const
     }
     const bool dose = e.has(Tag(0x3004, 0x000c)) || e.has(Tag(0x3004, 0x000e));
     if (dose && applyDose(e, frames)) return frames;
-    // One above the other, as far as nothing else is said.
-    if (!each && !file.framesAreTime)
-        for (DicomFrame& frame : frames)
-            frame.position +=
-                (first.thickness > 0.0 ? first.thickness : 1.0) * frame.frame * first.normal();
+    if (!each && !file.framesAreTime) stack(e, frames);
+    if (file.isSegments)
+        for (DicomFrame& frame : frames) {
+            frame.slope = frame.segment;
+            frame.intercept = 0.0;
+        }
     return frames;
 }
 

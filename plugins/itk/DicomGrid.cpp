@@ -15,9 +15,9 @@ namespace medical {
 
 namespace {
 
-constexpr double SAME_PLACE = 1e-3; // mm
 constexpr double EVEN = 0.02;       // of the spacing: what positions are rounded by
 constexpr double MOST_FILLED = 4.0; // slices for each that there is
+constexpr double MOST_FILLED_LABELS = 1000.0;
 
 using Place = std::vector<DicomFrame>; // the frames of one place, one for each time step
 
@@ -37,18 +37,9 @@ bool isEarlier(const DicomFrame& a, const DicomFrame& b)
     return std::tie(a.order, a.file, a.frame) < std::tie(b.order, b.file, b.frame);
 }
 
-std::vector<Place> placesOf(std::vector<DicomFrame> frames, const glm::dvec3& normal)
+std::vector<Place> placesOf(const std::vector<DicomFrame>& frames)
 {
-    std::stable_sort(frames.begin(), frames.end(), [&](const DicomFrame& a, const DicomFrame& b) {
-        return along(a, normal) < along(b, normal);
-    });
-    std::vector<Place> places;
-    for (const DicomFrame& frame : frames) {
-        if (places.empty() ||
-            along(frame, normal) - along(places.back().front(), normal) > SAME_PLACE)
-            places.emplace_back();
-        places.back().push_back(frame);
-    }
+    std::vector<Place> places = placesAlong(frames);
     for (Place& place : places)
         std::stable_sort(place.begin(), place.end(), isEarlier);
     return places;
@@ -58,7 +49,7 @@ std::vector<Place> placesOf(std::vector<DicomFrame> frames, const glm::dvec3& no
 std::vector<Place> unplaced(std::vector<DicomFrame> frames, bool framesAreTime)
 {
     std::stable_sort(frames.begin(), frames.end(), [](const DicomFrame& a, const DicomFrame& b) {
-        return std::tie(a.order[4], a.file, a.frame) < std::tie(b.order[4], b.file, b.frame);
+        return std::tie(a.order[5], a.file, a.frame) < std::tie(b.order[5], b.file, b.frame);
     });
     if (framesAreTime) return {frames};
     std::vector<Place> places;
@@ -72,6 +63,14 @@ void splitIntoSteps(const std::vector<Place>& places, DicomGrid& grid)
     const std::size_t count = places.front().size();
     const bool each = std::all_of(places.begin(), places.end(),
                                   [count](const Place& p) { return p.size() == count; });
+    std::size_t all = 0;
+    if (!each) grid.steps = wholeSteps(places, all);
+    if (!grid.steps.empty()) {
+        grid.notices.push_back(std::to_string(all - grid.steps.size()) + " of " +
+                               std::to_string(all) +
+                               " time steps lack slices that others have, and are left out");
+        return;
+    }
     grid.steps.resize(each ? count : 1);
     std::size_t left = 0;
     for (const Place& place : places) {
@@ -84,8 +83,45 @@ void splitIntoSteps(const std::vector<Place>& places, DicomGrid& grid)
                                std::to_string(left) + " are left out");
 }
 
+// All in one step, segments on each other.
+void mergeSegments(const std::vector<Place>& places, DicomGrid& grid)
+{
+    grid.steps.resize(1);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        grid.steps[0].push_back(places[k].front());
+        for (std::size_t i = 1; i < places[k].size(); ++i)
+            grid.over.push_back({k, places[k][i]});
+    }
+}
+
+double medianOf(std::vector<double> values)
+{
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+// A slice far from all others, as of a scout, at either end.
+void setOutlierAside(std::vector<double>& at, DicomGrid& grid)
+{
+    constexpr double FAR = 10.0; // gaps
+    if (at.size() < 4) return;
+    std::vector<double> gaps;
+    for (std::size_t i = 0; i + 1 < at.size(); ++i)
+        gaps.push_back(at[i + 1] - at[i]);
+    const double most = FAR * medianOf(gaps);
+    const bool last = gaps.back() > most;
+    if (!last && !(gaps.front() > most)) return;
+    grid.notices.push_back("the slice at " + millimetres(last ? at.back() : at.front()) +
+                           " is set aside: it is " + millimetres(last ? gaps.back() : gaps[0]) +
+                           " from the others");
+    const auto drop = [last](auto& of) { of.erase(last ? of.end() - 1 : of.begin()); };
+    drop(at);
+    for (auto& step : grid.steps)
+        drop(step);
+}
+
 /// The distance that divides all gaps; none where there is no such one.
-double commonSpacing(const std::vector<double>& gaps)
+double commonSpacing(const std::vector<double>& gaps, double mostFilled)
 {
     const double least = *std::min_element(gaps.begin(), gaps.end());
     double total = 0.0, count = 0.0;
@@ -95,7 +131,7 @@ double commonSpacing(const std::vector<double>& gaps)
         total += gap;
         count += times;
     }
-    if (count + 1.0 > MOST_FILLED * double(gaps.size() + 1)) return 0.0;
+    if (count + 1.0 > mostFilled * double(gaps.size() + 1)) return 0.0;
     return total / count;
 }
 
@@ -116,24 +152,40 @@ void tellGaps(const std::vector<double>& at, double spacing, std::size_t count, 
                            std::to_string(count) + " of " + millimetres(spacing));
 }
 
-// Expects at least two places, in order. Returns the spacing.
-double spaceEvenly(const std::vector<double>& at, DicomGrid& grid)
+// Whether slices lie where a grid has them: small differences add up.
+bool drifts(const std::vector<double>& at, double spacing)
 {
+    constexpr double MOST = 0.1; // of the spacing
+    for (std::size_t k = 0; k < at.size(); ++k)
+        if (!(std::abs(at[k] - (at[0] + double(k) * spacing)) < MOST * spacing)) return true;
+    return false;
+}
+
+// Between two slices of labels there are none: the nearer one, or nothing.
+DicomGrid::Slice labelSlice(std::size_t lower, double weight, double gap, double spacing)
+{
+    const bool upper = weight >= 0.5;
+    const double distance = (upper ? 1.0 - weight : weight) * gap;
+    return {upper ? lower + 1 : lower, 0.0, distance > 0.5 * spacing};
+}
+
+// Expects at least two places, in order. Returns the spacing.
+double spaceEvenly(const std::vector<double>& at, bool labels, DicomGrid& grid)
+{
+    const double mostFilled = labels ? MOST_FILLED_LABELS : MOST_FILLED;
     std::vector<double> gaps;
     for (std::size_t i = 0; i + 1 < at.size(); ++i)
         gaps.push_back(at[i + 1] - at[i]);
     const double length = at.back() - at.front();
-    double spacing = commonSpacing(gaps);
+    const double common = commonSpacing(gaps, mostFilled);
+    double spacing = common;
     if (!(spacing > 0.0)) {
-        std::vector<double> sorted = gaps;
-        std::sort(sorted.begin(), sorted.end());
-        const double median = sorted[sorted.size() / 2];
         const double intervals =
-            std::clamp(std::round(length / median), 1.0, MOST_FILLED * double(at.size()));
+            std::clamp(std::round(length / medianOf(gaps)), 1.0, mostFilled * double(at.size()));
         spacing = length / intervals;
     }
     const auto count = static_cast<std::size_t>(std::round(length / spacing)) + 1;
-    const bool even = count == at.size() && commonSpacing(gaps) > 0.0;
+    const bool even = count == at.size() && common > 0.0 && !drifts(at, spacing);
     std::size_t lower = 0;
     for (std::size_t k = 0; k < count; ++k) {
         const double place = at.front() + spacing * double(k);
@@ -145,13 +197,16 @@ double spaceEvenly(const std::vector<double>& at, DicomGrid& grid)
         if (std::abs(weight - std::round(weight)) * gaps[lower] < EVEN * spacing)
             weight = std::round(weight);
         weight = std::clamp(weight, 0.0, 1.0);
-        grid.slices.push_back(weight < 1.0 ? DicomGrid::Slice{lower, weight}
-                                           : DicomGrid::Slice{lower + 1, 0.0});
+        if (labels)
+            grid.slices.push_back(labelSlice(lower, weight, gaps[lower], spacing));
+        else
+            grid.slices.push_back(weight < 1.0 ? DicomGrid::Slice{lower, weight}
+                                               : DicomGrid::Slice{lower + 1, 0.0});
     }
     if (even)
         for (std::size_t k = 0; k < count; ++k)
             grid.slices[k] = {k, 0.0};
-    else
+    else if (!labels || !(common > 0.0))
         tellGaps(at, spacing, count, grid);
     return spacing;
 }
@@ -170,15 +225,22 @@ double bend(const std::vector<DicomFrame>& slices, const std::vector<double>& at
 
 } // namespace
 
-DicomGrid layOut(const DicomSeries& series, bool framesAreTime)
+DicomGrid layOut(const DicomSeries& series, const DicomFile& file)
 {
     DicomGrid grid;
     const DicomFrame& like = series.frames.front();
     const glm::dvec3 normal = like.normal();
     grid.placed = like.placed;
-    splitIntoSteps(like.placed ? placesOf(series.frames, normal)
-                               : unplaced(series.frames, framesAreTime),
-                   grid);
+    const std::vector<Place> places =
+        like.placed ? placesOf(series.frames) : unplaced(series.frames, file.framesAreTime);
+    if (file.isSegments)
+        mergeSegments(places, grid);
+    else
+        splitIntoSteps(places, grid);
+    std::vector<double> at;
+    for (const DicomFrame& frame : grid.steps.front())
+        at.push_back(along(frame, normal));
+    if (like.placed && !file.isSegments) setOutlierAside(at, grid);
     const std::vector<DicomFrame>& slices = grid.steps.front();
     const double thickness = like.thickness > 0.0 ? like.thickness : 1.0;
     grid.position = slices.front().position;
@@ -190,10 +252,7 @@ DicomGrid layOut(const DicomSeries& series, bool framesAreTime)
             grid.slices.push_back({k, 0.0});
         return grid;
     }
-    std::vector<double> at;
-    for (const DicomFrame& frame : slices)
-        at.push_back(along(frame, normal));
-    const double spacing = spaceEvenly(at, grid);
+    const double spacing = spaceEvenly(at, file.isSegments, grid);
     const glm::dvec3 perMillimetre =
         (slices.back().position - slices.front().position) / (at.back() - at.front());
     grid.axes[2] = spacing * perMillimetre;

@@ -109,6 +109,7 @@ Status readLayout(const Elements& elements, DicomFile& file)
 void readWords(const Elements& elements, DicomFile& file)
 {
     file.series = elements.text(Tag(0x0020, 0x000e));
+    file.instance = elements.text(Tag(0x0008, 0x0018));
     file.description = elements.text(Tag(0x0008, 0x103e));
     file.modality = elements.text(Tag(0x0008, 0x0060));
     file.seriesNumber = elements.decimal(Tag(0x0020, 0x0011)).value_or(0.0);
@@ -125,16 +126,44 @@ void calibrate(const gdcm::DataSet& set, DicomFile& file)
     for (const DicomFrame& frame : file.frames)
         calibrated = calibrated || frame.slope != 1.0 || frame.intercept != 0.0;
     file.inverted = file.photometric == "MONOCHROME1" && !calibrated;
-    if (file.modality != "PT") return;
-    std::string reason;
-    if (const std::optional<double> scale = petScale(set, reason)) {
-        for (DicomFrame& frame : file.frames) {
-            frame.slope *= *scale;
-            frame.intercept *= *scale;
-        }
-    } else {
-        file.note = "PET values are as stored, no SUV: " + reason;
-    }
+    if (file.modality == "PT") file.pet = petDoseOf(set);
+}
+
+// Whether decoded values may be others than were encoded.
+bool isLossy(const Elements& elements, const DicomFile& file)
+{
+    if (elements.text(Tag(0x0028, 0x2110)) == "01") return true;
+    const std::string family = "1.2.840.10008.1.2.4.";
+    for (const char* end : {"50", "51", "81", "91"})
+        if (file.syntax == family + end) return true;
+    return false;
+}
+
+// Of pixels that are no part of the picture.
+void readPadding(const Elements& elements, DicomFile& file)
+{
+    if (file.isFloat || file.colour()) return;
+    const auto numberAt = [&](const Tag& tag) -> std::optional<double> {
+        const std::optional<int> word = elements.word(tag);
+        if (!word) return std::nullopt;
+        return file.isSigned ? double(static_cast<std::int16_t>(*word)) : double(*word);
+    };
+    const std::optional<double> value = numberAt(Tag(0x0028, 0x0120));
+    if (!value) return;
+    const std::optional<double> limit = numberAt(Tag(0x0028, 0x0121));
+    if (!limit && isLossy(elements, file)) return; // only near the value
+    const double other = limit.value_or(*value);
+    file.padding = {std::min(*value, other), std::max(*value, other)};
+}
+
+// Which pictures of a segmentation can be read: those of bits, a segment each.
+Status readSegments(const Elements& elements, DicomFile& file)
+{
+    if (elements.text(Tag(0x0008, 0x0016)) != "1.2.840.10008.5.1.4.1.1.66.4") return {};
+    file.isSegments = file.allocated == 1;
+    if (file.isSegments || elements.items(Tag(0x0062, 0x0002)).size() < 2) return {};
+    return {ErrorCode::NOT_SUPPORTED,
+            file.path + " has several segments of fractions, which are no labels"};
 }
 
 Result<DicomFile> readHeader(const std::string& path)
@@ -160,10 +189,15 @@ Result<DicomFile> readHeader(const std::string& path)
     if (status.ok()) status = readLut(elements, file);
     if (status.ok()) status = readPalette(elements, file);
     if (!status.ok()) return status;
+    if (status = readSegments(elements, file); !status.ok()) return status;
+    readPadding(elements, file);
     const double frames = elements.decimal(Tag(0x0028, 0x0008)).value_or(1.0);
     if (!(frames >= 1.0 && frames <= MOST_FRAMES))
         return Status(ErrorCode::VALUE_INVALID,
                       path + " has " + std::to_string(frames) + " frames");
+    // Of single frames when they are read: a series without one of them is refused, not filled.
+    if (frames > 1.0)
+        if (status = checkPixelBytes(file, std::int64_t(frames)); !status.ok()) return status;
     file.frames = dicomFramesOf(set, static_cast<int>(frames), file);
     for (const DicomFrame& frame : file.frames)
         if (frame.slope == 0.0)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "PetScale.h"
+
 #include <osgVolumizer/core/Status.h>
 
 #include <gdcmDataSet.h>
@@ -9,6 +11,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgVolumizer {
@@ -25,9 +28,10 @@ struct DicomFrame
     double columnStep = 1.0, rowStep = 1.0;   ///< mm between columns, between rows
     double thickness = 0.0;                   ///< mm to the next slice; 0: not said
     double slope = 1.0, intercept = 0.0;
+    int segment = 1; ///< of a segmentation
     /// Which of several pictures of one place is first: temporal position, trigger time, echo,
-    /// acquisition, instance.
-    std::array<double, 5> order{};
+    /// acquisition, time of acquisition, instance.
+    std::array<double, 6> order{};
 
     glm::dvec3 normal() const;
 };
@@ -50,6 +54,10 @@ struct DicomFile
     std::vector<double> palette[3]; ///< red, green, blue of each index from `paletteFirst` on
     double paletteFirst = 0.0;
     int paletteBits = 8;
+    std::string instance;                             ///< its UID; or empty
+    std::optional<std::pair<double, double>> padding; ///< stored values from ... to that are none
+    bool isSegments = false; ///< bits, of the segment that a frame's slope is the number of
+    std::optional<PetDose> pet;
     std::string note; ///< something that the reader should be told; or empty
     std::vector<DicomFrame> frames;
 
@@ -62,9 +70,11 @@ Result<DicomFile> readDicomHeader(const std::string& path);
 
 /// The frames of a file with the header `set`: parts of readDicomHeader().
 std::vector<DicomFrame> dicomFramesOf(const gdcm::DataSet& set, int count, const DicomFile& file);
-/// Factor from stored to body weight SUV of a PET picture that says how; else none, with the reason
-/// in `reason`.
-std::optional<double> petScale(const gdcm::DataSet& set, std::string& reason);
+/// Whether a file can have the pixels of so many frames, before anything is decoded or allocated:
+/// FILE_UNREADABLE; a text begins with the path.
+Status checkPixelBytes(const DicomFile& file, std::int64_t frames);
+/// Neither compressed nor deflated.
+bool isPlainSyntax(const std::string& uid);
 
 } // namespace medical
 } // namespace osgVolumizer

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <limits>
 
 namespace osgVolumizer {
 namespace medical {
@@ -31,33 +32,48 @@ std::string syntaxName(const std::string& uid)
     return uid;
 }
 
-bool isPlain(const gdcm::TransferSyntax& syntax)
-{
-    return !syntax.IsEncapsulated() &&
-           syntax != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
-}
-
 // Of all pixels as they are stored without compression. Sizes are 16 bits each, frames 20.
-std::int64_t neededBytes(const DicomFile& file)
+std::int64_t neededBytes(const DicomFile& file, std::int64_t frames)
 {
-    const std::int64_t pixels =
-        std::int64_t(file.columns) * file.rows * std::int64_t(file.frames.size());
+    const std::int64_t pixels = std::int64_t(file.columns) * file.rows * frames;
     const std::int64_t bits = pixels * file.samples * file.allocated;
     return ((file.photometric == "YBR_FULL_422" ? bits / 3 * 2 : bits) + 7) / 8;
 }
 
-// Before anything is decoded.
-Status checkSize(const DicomFile& file, bool plain)
+// Each frame has a fragment with a head of its own, but in films.
+std::int64_t leastCompressed(const DicomFile& file, std::int64_t frames)
 {
+    constexpr std::int64_t FRAGMENT_HEAD = 8;
+    const std::int64_t bytes = neededBytes(file, frames) / HIGHEST_FACTOR;
+    const std::string films = "1.2.840.10008.1.2.4.10"; // MPEG and its followers
+    const bool film = file.syntax.compare(0, films.size(), films) == 0;
+    const bool deflated = file.syntax == "1.2.840.10008.1.2.1.99";
+    return film || deflated ? bytes : std::max(bytes, FRAGMENT_HEAD * frames);
+}
+
+} // namespace
+
+bool isPlainSyntax(const std::string& uid)
+{
+    const gdcm::TransferSyntax syntax(gdcm::TransferSyntax::GetTSType(uid.c_str()));
+    return !syntax.IsEncapsulated() &&
+           syntax != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
+}
+
+Status checkPixelBytes(const DicomFile& file, std::int64_t frames)
+{
+    const bool plain = isPlainSyntax(file.syntax);
     std::error_code failed;
     const auto all = static_cast<std::int64_t>(std::filesystem::file_size(file.path, failed));
     const std::int64_t found = plain && !file.isFloat ? all - file.pixelsAt : all;
-    const std::int64_t needed = neededBytes(file) / (plain ? 1 : HIGHEST_FACTOR);
+    const std::int64_t needed = plain ? neededBytes(file, frames) : leastCompressed(file, frames);
     if (!failed && needed <= found) return {};
     return {ErrorCode::FILE_UNREADABLE,
             file.path + " has " + std::to_string(found) + " bytes of pixels, which need " +
                 (plain ? "" : "even compressed ") + std::to_string(needed)};
 }
+
+namespace {
 
 Status undecoded(const DicomFile& file, const gdcm::File& read, bool whole)
 {
@@ -113,8 +129,9 @@ bool decodeRle(const gdcm::Bitmap& image, const DicomFile& file, std::vector<cha
 Status DicomPixels::open(const DicomFile& file)
 {
     const gdcm::TransferSyntax syntax(gdcm::TransferSyntax::GetTSType(file.syntax.c_str()));
-    const bool plain = isPlain(syntax);
-    if (Status status = checkSize(file, plain); !status.ok()) return status;
+    const bool plain = isPlainSyntax(file.syntax);
+    if (Status status = checkPixelBytes(file, std::int64_t(file.frames.size())); !status.ok())
+        return status;
     // No reader of images with their places, which asserts that some elements are there.
     gdcm::PixmapReader reader;
     reader.SetFileName(file.path.c_str());
@@ -239,6 +256,10 @@ Status DicomPixels::readFrame(const DicomFile& file, const DicomFrame& frame, in
     const double last = double(file.lut.size()) - 1.0;
     for (std::size_t i = 0; i < count; ++i) {
         double v = stored(first + i);
+        if (file.padding && v >= file.padding->first && v <= file.padding->second) {
+            values[i] = std::numeric_limits<double>::quiet_NaN();
+            continue;
+        }
         if (file.inverted) v = lowest + highest - v;
         if (!file.lut.empty())
             v = file.lut[static_cast<std::size_t>(std::clamp(v - file.lutFirst, 0.0, last))];

@@ -15,7 +15,7 @@ public:
     /// claims, damaged), NOT_SUPPORTED (compression or form that GDCM does not read).
     Status open(const DicomFile& file);
     /// Calibrated values of a frame, columns * rows of them: of colours their luminance, or the
-    /// channel that is asked for.
+    /// channel that is asked for. Padding is NaN.
     Status readFrame(const DicomFile& file, const DicomFrame& frame, int channel,
                      std::vector<double>& values) const;
 

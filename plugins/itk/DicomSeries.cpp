@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 namespace osgVolumizer {
 namespace medical {
@@ -37,7 +39,7 @@ struct Group
     double voxels() const { return double(like->columns) * like->rows * double(frames.size()); }
 };
 
-DicomSeries seriesOf(const std::vector<DicomFile>& files, const std::string& uid)
+std::vector<DicomSeries> seriesOf(const std::vector<DicomFile>& files, const std::string& uid)
 {
     std::vector<Group> groups;
     int count = 0;
@@ -64,15 +66,46 @@ DicomSeries seriesOf(const std::vector<DicomFile>& files, const std::string& uid
     series.number = like.seriesNumber;
     series.columns = like.columns;
     series.rows = like.rows;
-    series.frames = largest->frames;
-    series.setAside = count - static_cast<int>(series.frames.size());
-    return series;
+    series.setAside = count - static_cast<int>(largest->frames.size());
+    std::vector<DicomSeries> parts;
+    for (std::vector<DicomFrame>& frames : stationsOf(largest->frames)) {
+        series.frames = std::move(frames);
+        parts.push_back(series);
+    }
+    for (DicomSeries& part : parts) {
+        part.part = static_cast<int>(&part - parts.data()) + 1;
+        part.parts = static_cast<int>(parts.size());
+    }
+    return parts;
 }
 
-bool endsWith(const std::string& text, const std::string& end)
+// Whole components of a UID, or what has a dot: a number alone is the end of many.
+bool endsWith(const std::string& uid, const std::string& wanted)
 {
-    return text.size() >= end.size() &&
-           text.compare(text.size() - end.size(), end.size(), end) == 0;
+    const bool dotted = wanted.find('.') != std::string::npos;
+    const std::string end = dotted ? wanted : '.' + wanted;
+    return uid.size() >= end.size() && uid.compare(uid.size() - end.size(), end.size(), end) == 0;
+}
+
+// Which of the series that are meant; none where several are.
+std::optional<std::size_t> onlyOne(const std::vector<DicomSeries>& all,
+                                   const std::vector<std::size_t>& matches)
+{
+    std::optional<std::size_t> one;
+    for (const std::size_t i : matches) {
+        if (one && all[*one].uid != all[i].uid) return std::nullopt;
+        if (!one || all[i].voxels() > all[*one].voxels()) one = i;
+    }
+    return one;
+}
+
+// A file that lies in the folder twice, under two names.
+bool isCopy(const DicomFile& a, const DicomFile& b)
+{
+    return a.instance == b.instance && !a.instance.empty() && a.series == b.series &&
+           a.frames.size() == b.frames.size() &&
+           a.frames.front().position == b.frames.front().position &&
+           a.frames.front().order == b.frames.front().order;
 }
 
 Status noSuchSeries(const DicomStudy& study, const std::string& wanted, std::size_t matches)
@@ -97,12 +130,21 @@ Result<DicomStudy> readDicomStudy(const std::vector<std::string>& paths)
     DicomStudy study;
     Status first;
     std::vector<std::string> uids;
+    std::multimap<std::string, std::size_t> byInstance;
     for (const std::string& path : paths) {
         Result<DicomFile> file = readDicomHeader(path);
         if (!file.ok()) {
             if (study.unread++ == 0) first = file.status;
             continue;
         }
+        const auto [same, end] = byInstance.equal_range(file->instance);
+        if (std::any_of(same, end, [&](const auto& known) {
+                return isCopy(study.files[known.second], *file);
+            })) {
+            ++study.copies;
+            continue;
+        }
+        byInstance.emplace(file->instance, study.files.size());
         for (DicomFrame& frame : file->frames)
             frame.file = static_cast<int>(study.files.size());
         if (std::find(uids.begin(), uids.end(), file->series) == uids.end())
@@ -111,8 +153,11 @@ Result<DicomStudy> readDicomStudy(const std::vector<std::string>& paths)
     }
     study.firstReason = first.text;
     if (study.files.empty()) return first;
-    for (const std::string& uid : uids)
-        study.series.push_back(seriesOf(study.files, uid));
+    for (const std::string& uid : uids) {
+        scalePet(study.files, uid);
+        for (DicomSeries& series : seriesOf(study.files, uid))
+            study.series.push_back(std::move(series));
+    }
     std::stable_sort(
         study.series.begin(), study.series.end(),
         [](const DicomSeries& a, const DicomSeries& b) { return a.number < b.number; });
@@ -133,12 +178,17 @@ Result<std::size_t> chooseSeries(const DicomStudy& study, const std::string& wan
         number <= static_cast<std::int64_t>(all.size()))
         return static_cast<std::size_t>(number - 1);
     std::vector<std::size_t> matches;
-    for (std::size_t i = 0; i < all.size(); ++i)
-        if (all[i].uid == wanted || all[i].description == wanted) matches.push_back(i);
-    const bool exact = !matches.empty();
-    for (std::size_t i = 0; !exact && i < all.size(); ++i)
-        if (endsWith(all[i].uid, wanted)) matches.push_back(i);
-    if (matches.size() == 1) return matches.front();
+    const auto match = [&](const auto& isMeant) {
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (isMeant(all[i])) matches.push_back(i);
+        return !matches.empty();
+    };
+    const bool found =
+        (number >= 1 &&
+         match([number](const DicomSeries& s) { return s.number == double(number); })) ||
+        match([&](const DicomSeries& s) { return s.uid == wanted || s.description == wanted; });
+    if (!found) match([&](const DicomSeries& s) { return endsWith(s.uid, wanted); });
+    if (const std::optional<std::size_t> one = onlyOne(all, matches)) return *one;
     return noSuchSeries(study, wanted, matches.size());
 }
 

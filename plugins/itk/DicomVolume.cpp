@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -113,17 +114,23 @@ public:
         VoxelSource::Description slices = d;
         slices.size.z = static_cast<int>(grid.steps.front().size());
         std::map<int, std::vector<Target>> byFile;
+        const bool layered = !grid.over.empty();
         const CallerReports quiet;
         for (std::size_t s = 0; s < grid.steps.size(); ++s) {
             steps.push_back(new MemoryVoxelSource);
             if (Status status = steps.back()->allocate(slices); !status.ok()) return status;
+            if (layered) std::memset(steps.back()->data(), 0, std::size_t(slices.sizeInBytes()));
             for (std::size_t k = 0; k < grid.steps[s].size(); ++k)
-                byFile[grid.steps[s][k].file].push_back({steps.back().get(), k, grid.steps[s][k]});
+                byFile[grid.steps[s][k].file].push_back(
+                    {steps.back().get(), k, grid.steps[s][k], layered});
         }
+        for (const DicomGrid::Over& over : grid.over)
+            byFile[over.frame.file].push_back({steps[0].get(), over.slice, over.frame, true});
         for (const auto& [file, targets] : byFile)
             if (Status status = readFile(_chosen.study.files[std::size_t(file)], targets, d.type);
                 !status.ok())
                 return status;
+        fillPadding(d.type);
         return {};
     }
     const core::ValueRange& range() const { return _range; }
@@ -134,6 +141,13 @@ private:
         MemoryVoxelSource* volume;
         std::size_t slice;
         DicomFrame frame;
+        bool over = false; ///< only what is not 0, on what is there
+    };
+    /// Samples of padding, of a type that has no mark for them.
+    struct Gap
+    {
+        MemoryVoxelSource* volume;
+        std::size_t first, count;
     };
 
     Status readFile(const DicomFile& file, const std::vector<Target>& targets, VoxelType type)
@@ -144,19 +158,53 @@ private:
             if (Status status = pixels.readFrame(file, target.frame, _channel, _values);
                 !status.ok())
                 return status;
+            if (file.padding) rememberPadding(target);
             for (const double v : _values)
                 _range.expand({v, v});
-            const std::size_t bytes = _values.size() * voxelTypeSize(type);
-            core::convertVoxels(_values.data(), VoxelType::FLOAT64,
-                                static_cast<char*>(target.volume->data()) + target.slice * bytes,
-                                type, _values.size());
+            store(target, type);
         }
         return {};
+    }
+    void store(const Target& target, VoxelType type)
+    {
+        const std::size_t bytes = _values.size() * voxelTypeSize(type);
+        char* to = static_cast<char*>(target.volume->data()) + target.slice * bytes;
+        if (!target.over) {
+            core::convertVoxels(_values.data(), VoxelType::FLOAT64, to, type, _values.size());
+            return;
+        }
+        for (std::size_t i = 0; i < _values.size(); ++i)
+            if (_values[i] != 0.0)
+                core::convertVoxels(&_values[i], VoxelType::FLOAT64, to + i * voxelTypeSize(type),
+                                    type, 1);
+    }
+    void rememberPadding(const Target& target)
+    {
+        const std::size_t first = target.slice * _values.size();
+        for (std::size_t i = 0, end = 0; i < _values.size(); i = end + 1) {
+            for (end = i; end < _values.size() && std::isnan(_values[end]);)
+                ++end;
+            if (end > i) _padding.push_back({target.volume, first + i, end - i});
+        }
+    }
+    // The lowest of what is no padding: nothing is below it.
+    void fillPadding(VoxelType type)
+    {
+        const double lowest = _range.empty() ? 0.0 : _range.low;
+        if (!_padding.empty()) _range.expand({lowest, lowest});
+        for (const Gap& gap : _padding) {
+            _values.assign(gap.count, lowest);
+            core::convertVoxels(_values.data(), VoxelType::FLOAT64,
+                                static_cast<char*>(gap.volume->data()) +
+                                    gap.first * voxelTypeSize(type),
+                                type, gap.count);
+        }
     }
 
     const Chosen& _chosen;
     int _channel;
     std::vector<double> _values;
+    std::vector<Gap> _padding;
     core::ValueRange _range;
 };
 
@@ -175,6 +223,10 @@ Result<Memory> resample(const MemoryVoxelSource& from, const DicomGrid& grid,
         const DicomGrid::Slice& slice = grid.slices[k];
         const std::size_t bytes = count * voxelTypeSize(source);
         char* target = static_cast<char*>(to->data()) + k * count * voxelTypeSize(d.type);
+        if (slice.empty) {
+            std::memset(target, 0, count * voxelTypeSize(d.type));
+            continue;
+        }
         if (slice.weight == 0.0) {
             core::convertVoxels(data + slice.lower * bytes, source, target, d.type, count);
             continue;
@@ -190,6 +242,16 @@ Result<Memory> resample(const MemoryVoxelSource& from, const DicomGrid& grid,
     return to;
 }
 
+// Whether each slice is one that was read.
+bool isAsItIs(const DicomGrid& grid)
+{
+    if (grid.slices.size() != grid.steps.front().size()) return false;
+    for (std::size_t k = 0; k < grid.slices.size(); ++k)
+        if (grid.slices[k].lower != k || grid.slices[k].weight != 0.0 || grid.slices[k].empty)
+            return false;
+    return true;
+}
+
 void notice(const std::string& path, const std::string& text)
 {
     OSG_NOTICE << "osgVolumizer: " << path << ": " << text << std::endl;
@@ -203,10 +265,20 @@ void tell(const io::VolumeRequest& request, const Chosen& chosen)
     const std::string named =
         (series.description.empty() ? "" : "\"" + series.description + "\" ") + "(" + series.uid +
         ")";
-    if (study.series.size() > 1 && request.dataset.empty())
+    const bool several = study.series.size() > std::size_t(series.parts);
+    if (several && request.dataset.empty())
         notice(request.path,
                "of " + std::to_string(study.series.size()) + " series the largest is taken, " +
                    std::to_string(chosen.series + 1) + " " + named + "; dataset= chooses another");
+    std::int64_t number = 0;
+    if (series.parts > 1 && !core::parseInteger(request.dataset, number))
+        notice(request.path, "of " + std::to_string(series.parts) +
+                                 " volumes that lie beside each other in this series, as stations "
+                                 "or tiles do, the largest is taken, " +
+                                 std::to_string(chosen.series + 1) + "; dataset= chooses another");
+    if (study.copies > 0)
+        notice(request.path,
+               std::to_string(study.copies) + " files are copies of others and are left out");
     if (series.setAside > 0)
         notice(request.path, std::to_string(series.setAside) +
                                  " pictures of another size or orientation, such as scouts, are "
@@ -269,7 +341,7 @@ Result<Chosen> choose(const io::VolumeRequest& request)
     const Result<std::size_t> series = chooseSeries(chosen.study, request.dataset);
     if (!series.ok()) return Status(series.status.code, request.path + ": " + series.status.text);
     chosen.series = *series;
-    chosen.grid = layOut(chosen.theSeries(), chosen.like().framesAreTime);
+    chosen.grid = layOut(chosen.theSeries(), chosen.like());
     return chosen;
 }
 
@@ -309,10 +381,7 @@ Result<io::Source> readDicom(const io::VolumeRequest& request)
     VoxelSource::Description as = *d;
     as.type = narrowed(d->type, reader.range());
     std::vector<osg::ref_ptr<VoxelSource>> sources;
-    const bool asTheyAre = as.type == d->type &&
-                           std::size_t(as.size.z) == chosen->grid.steps.front().size() &&
-                           std::all_of(chosen->grid.slices.begin(), chosen->grid.slices.end(),
-                                       [](const DicomGrid::Slice& s) { return s.weight == 0.0; });
+    const bool asTheyAre = as.type == d->type && isAsItIs(chosen->grid);
     for (Memory& step : steps) {
         if (!asTheyAre) {
             const Result<Memory> even = resample(*step, chosen->grid, as);
@@ -339,7 +408,7 @@ Result<std::vector<VolumeEntry>> listDicom(const io::VolumeRequest& request)
     std::vector<VolumeEntry> entries;
     for (std::size_t i = 0; i < chosen->study.series.size(); ++i) {
         chosen->series = i;
-        chosen->grid = layOut(chosen->theSeries(), chosen->like().framesAreTime);
+        chosen->grid = layOut(chosen->theSeries(), chosen->like());
         const DicomSeries& series = chosen->theSeries();
         const DicomGrid& grid = chosen->grid;
         VolumeEntry entry;
@@ -354,7 +423,10 @@ Result<std::vector<VolumeEntry>> listDicom(const io::VolumeRequest& request)
             std::to_string(grid.steps.front().size()) + " slices of " +
             core::formatTriple(glm::dvec3(glm::length(grid.axes[0]), glm::length(grid.axes[1]),
                                           glm::length(grid.axes[2]))) +
-            " mm, " + series.uid;
+            " mm, " + series.uid +
+            (series.parts > 1
+                 ? ", part " + std::to_string(series.part) + " of " + std::to_string(series.parts)
+                 : "");
         entries.push_back(entry);
     }
     return entries;

@@ -12,6 +12,8 @@
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
 
+#include <osgDB/FileNameUtils>
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -35,7 +37,8 @@ struct Storage
     std::int64_t found = 0; ///< in the file, and those that it names
     bool packed = true;
     bool isRgba = false; ///< a MetaImage that says so: it has no field for that
-    /// To LPS, of a place that ITK leaves as the file has it: factors of x, y, z.
+    std::string unit;    ///< of lengths, where the format has another one than mm
+    /// To LPS and mm, of a place that ITK leaves as the file has it: factors of x, y, z.
     glm::dvec3 turn{1.0};
 };
 
@@ -58,21 +61,76 @@ std::string valueOf(std::string_view line)
     return std::string(value);
 }
 
+std::string lowered(std::string_view text)
+{
+    return osgDB::convertToLowerCase(std::string(text));
+}
+
+/// What ITK leaves of a NRRD's space on the way to LPS: it turns x of LAS, where y is to be, and
+/// knows no spaces with time.
+glm::dvec3 turnOf(const std::string& space)
+{
+    if (space == "left-anterior-superior" || space == "las") return {-1, -1, 1};
+    if (space == "right-anterior-superior-time" || space == "rast") return {-1, -1, 1};
+    if (space == "left-anterior-superior-time" || space == "last") return {1, -1, 1};
+    return glm::dvec3(1.0);
+}
+
+/// Millimetres of a unit of length; 0 where it is none that is known.
+double millimetresOf(const std::string& unit)
+{
+    struct Unit
+    {
+        const char* name;
+        double millimetres;
+    };
+    constexpr Unit UNITS[] = {
+        {"mm", 1.0},          {"millimeter", 1.0},  {"millimetre", 1.0},  {"cm", 10.0},
+        {"centimeter", 10.0}, {"centimetre", 10.0}, {"m", 1000.0},        {"meter", 1000.0},
+        {"metre", 1000.0},    {"um", 1e-3},         {"\xc2\xb5m", 1e-3},  {"\xce\xbcm", 1e-3},
+        {"micron", 1e-3},     {"micrometer", 1e-3}, {"micrometre", 1e-3}, {"nm", 1e-6},
+        {"nanometer", 1e-6},  {"nanometre", 1e-6},  {"angstrom", 1e-7}};
+    std::string name = lowered(unit);
+    for (const Unit& known : UNITS)
+        if (name == known.name || name == std::string(known.name) + 's') return known.millimetres;
+    return 0.0;
+}
+
+/// Of NRRD's quoted units, one for each axis: what is no length, as of time or colours, has none.
+glm::dvec3 millimetresOfAll(const std::string& quoted)
+{
+    const std::vector<std::string_view> pieces = core::splitText(quoted, '"');
+    std::vector<double> lengths;
+    for (std::size_t i = 1; i < pieces.size(); i += 2)
+        if (const double v = millimetresOf(std::string(pieces[i])); v > 0.0) lengths.push_back(v);
+    if (lengths.size() == 3) return {lengths[0], lengths[1], lengths[2]};
+    return glm::dvec3(lengths.empty() ? 1.0 : lengths.front());
+}
+
 // Of NRRD and MetaImage, whose headers are lines of text.
 Storage storageOfText(const std::string& path, const std::string& head)
 {
-    Storage storage{sizeOf(path), false, false, glm::dvec3(1.0)};
+    Storage storage;
+    storage.found = sizeOf(path);
+    storage.packed = false;
+    bool hasUnits = false;
     for (const std::string_view line : core::splitText(head, '\n')) {
         const auto is = [line](std::string_view field) {
-            return line.substr(0, field.size()) == field;
+            return lowered(line.substr(0, field.size())) == lowered(field);
         };
         if (line.empty()) break; // data of NRRD begin
         const std::string value = valueOf(line);
         if (is("encoding:")) storage.packed = value != "raw";
         if (is("CompressedData"))
             storage.packed = value == "True" || value == "true" || value == "1";
-        if (is("space:") && (value == "left-anterior-superior" || value == "LAS"))
-            storage.turn = glm::dvec3(-1, -1, 1); // ITK turns x, where y is to be
+        if (is("space:")) storage.turn *= turnOf(lowered(value));
+        const bool spaceUnits = is("space units:") || is("spaceunits:");
+        if ((spaceUnits || is("units:")) && !hasUnits) {
+            storage.turn *= millimetresOfAll(value);
+            hasUnits = true;
+        }
+        if (is("DistanceUnits"))
+            if (const double v = millimetresOf(value); v > 0.0) storage.turn *= v;
         if (is("Comment")) storage.isRgba = value == "RGBA";
         const bool names = is("data file:") || is("datafile:") || is("ElementDataFile");
         if (!names || value == "LOCAL" || value == "Local" || value == "local") continue;
@@ -102,9 +160,14 @@ itk::SmartPointer<IO> ioFor(const std::string& path, Storage& storage)
         storage = storageOfText(path, head);
         return io.GetPointer();
     }
-    storage = {sizeOf(path), false, false, glm::dvec3(1.0)};
+    storage = Storage();
+    storage.found = sizeOf(path);
+    storage.packed = false;
+    storage.unit = "\xc3\xa5ngstr\xc3\xb6m";
     if (const auto io = itk::MRCImageIO::New(); reads(*io)) return io.GetPointer();
+    storage.unit = "micrometre";
     if (const auto io = itk::BioRadImageIO::New(); reads(*io)) return io.GetPointer();
+    storage.unit.clear();
     storage.packed = true;
     if (const auto io = itk::GiplImageIO::New(); reads(*io)) return io.GetPointer();
     if (ITK_VERSION_MAJOR == 5 && ITK_VERSION_MINOR < 4) storage.turn = glm::dvec3(-1, -1, 1);
@@ -246,6 +309,9 @@ Result<Samples> readItkFile(const std::string& path)
         if (Status status = checkBytes(path, storage.found, samples->bytes(), storage.packed);
             !status.ok())
             return status;
+        if (!storage.unit.empty())
+            samples->note = "its unit of length is the " + storage.unit +
+                            ", as of all files of its format: one unit of the scene is one";
         if (Status status = readAll(*io, *samples, path); !status.ok()) return status;
         return samples;
     } catch (const std::exception& e) {

@@ -2,6 +2,9 @@
 
 #include <osgVolumizer/core/voxels/VoxelData.h>
 
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -52,10 +55,10 @@ Common readFirst(const Fields& f, bool nifti)
     }
     c.type = f.at<std::int16_t>(70);
     c.offset = f.at<float>(108);
-    c.slope = 1.0;
-    if (!nifti) return c;
+    // Analyze has no such fields; SPM writes its scale there.
     c.slope = f.at<float>(112);
     c.intercept = f.at<float>(116);
+    if (!nifti) return c;
     c.intent = f.at<std::int16_t>(68);
     c.units = f.at<std::uint8_t>(123);
     c.qformCode = f.at<std::int16_t>(252);
@@ -184,20 +187,38 @@ void fromQuaternion(const Common& c, const glm::dvec3& spacing, Samples& s)
     s.position = {c.qoffset[0], c.qoffset[1], c.qoffset[2]};
 }
 
+// Likewise. Whether the sform spans a volume; a single slice needs no third axis.
+bool fromMatrix(const Common& c, const glm::dvec3& spacing, Samples& s)
+{
+    glm::dmat3 axes(0.0);
+    glm::dvec3 position(0.0);
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j)
+            axes[j][i] = c.srow[i][j];
+        position[i] = c.srow[i][3];
+    }
+    const glm::dvec3 normal = glm::cross(axes[0], axes[1]);
+    if (s.size.z == 1 && axes[2] == glm::dvec3(0.0) && glm::length(normal) > 0.0)
+        axes[2] = spacing.z * glm::normalize(normal);
+    const double volume = std::abs(glm::determinant(axes));
+    if (!(volume > 0.0) || !std::isfinite(volume + glm::dot(position, position))) return false;
+    s.axes = axes;
+    s.position = position;
+    return true;
+}
+
 void applyPlace(const Common& c, Samples& s)
 {
     glm::dvec3 spacing(1.0);
     for (int i = 0; i < 3; ++i)
         if (const double v = std::abs(c.pixdim[i + 1]); v > 0.0 && std::isfinite(v)) spacing[i] = v;
-    if (c.sformCode > 0) {
-        for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < 3; ++j)
-                s.axes[j][i] = c.srow[i][j];
-            s.position[i] = c.srow[i][3];
-        }
-    } else if (c.qformCode > 0) {
+    const bool placed = c.sformCode > 0 && fromMatrix(c, spacing, s);
+    if (c.sformCode > 0 && !placed)
+        s.note = std::string("its sform spans no volume, and so it lies where its ") +
+                 (c.qformCode > 0 ? "qform" : "spacing") + " says";
+    if (!placed && c.qformCode > 0) {
         fromQuaternion(c, spacing, s);
-    } else {
+    } else if (!placed) {
         s.axes = glm::dmat3(-spacing.x, 0, 0, 0, spacing.y, 0, 0, 0, spacing.z);
         s.position = -0.5 * (s.axes * (glm::dvec3(s.size) - 1.0));
     }

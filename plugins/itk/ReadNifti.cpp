@@ -46,6 +46,9 @@ Result<Samples> readNifti(const std::string& name)
         path = endsIn(name, ".img") || endsIn(name, ".img.gz")
                    ? name
                    : existing(without(path), {".img", ".img.gz"});
+    std::error_code ignored;
+    if (header->detached && std::filesystem::exists(without(path) + ".mat", ignored))
+        header->samples.note = "the transform in " + without(path) + ".mat is not applied";
     if (Status status = readNumbers(path, header->offset, header->swapped, header->samples);
         !status.ok())
         return status;

@@ -9,6 +9,7 @@
 #include <osgVolumizer/io/FormatPlugin.h>
 #include <osgVolumizer/io/PluginFile.h>
 
+#include <osg/Notify>
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
@@ -65,6 +66,8 @@ protected:
         if (isDicom(request)) return readDicom(request);
         const Result<Samples> samples = samplesOf(request);
         if (!samples.ok()) return samples.status;
+        if (!samples->note.empty())
+            OSG_NOTICE << "osgVolumizer: " << request.path << ": " << samples->note << std::endl;
         return sourceOf(*samples, request);
     }
     Result<std::vector<VolumeEntry>> list(const io::VolumeRequest& request) const override

@@ -40,6 +40,7 @@ struct Samples
     double slope = 1.0, intercept = 0.0; ///< value = slope * number + intercept
     glm::dmat3 axes{1.0};                ///< LPS, mm: the step of each voxel axis
     glm::dvec3 position{0.0};            ///< LPS, mm: of sample 0
+    std::string note;                    ///< something that the reader should be told; or empty
     std::shared_ptr<char> data;
 
     /// Of all numbers; saturates.

@@ -124,6 +124,16 @@ Status writeParts(const VoxelSource& source, const std::string& path, const std:
     return part.keep();
 }
 
+// What is there without its header is not one of ours.
+Status requireOwnData(const std::string& path, const std::string& data)
+{
+    std::error_code ignored;
+    if (std::filesystem::exists(data, ignored) && !std::filesystem::exists(path, ignored))
+        return {ErrorCode::FILE_UNREADABLE, path + " cannot be written: its samples belong into " +
+                                                data + ", which is there already"};
+    return core::requireRegularTarget(data);
+}
+
 bool hasEnd(const std::string& name, const std::string& end)
 {
     return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
@@ -138,11 +148,12 @@ Status writeFile(const VoxelSource& source, const std::string& path)
     if (Status status = core::requireRegularTarget(path); !status.ok()) return status;
     const std::string name = osgDB::convertToLowerCase(path);
     const bool detached = hasEnd(name, ".nhdr") || hasEnd(name, ".mhd");
+    // Not STEM.raw, which can be somebody's.
     const std::filesystem::path data =
-        detached ? std::filesystem::path(path).replace_extension(".raw") : std::filesystem::path();
+        detached ? std::filesystem::path(path + ".raw") : std::filesystem::path();
     const std::string dataName = data.filename().string();
     if (detached)
-        if (Status status = core::requireRegularTarget(data.string()); !status.ok()) return status;
+        if (Status status = requireOwnData(path, data.string()); !status.ok()) return status;
     if (hasEnd(name, ".nrrd") || hasEnd(name, ".nhdr"))
         return writeParts(source, path, nrrdHeader(d, dataName), data.string(), false, false);
     if (hasEnd(name, ".mha") || hasEnd(name, ".mhd"))

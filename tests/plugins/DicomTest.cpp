@@ -386,7 +386,12 @@ TEST_F(Dicom, ChosenAmongSeveralSeries)
     EXPECT_EQ(slices(path(""), "dataset=.77"), (std::vector<double>{700, 701}));
     EXPECT_EQ(slices(path(""), "dataset='Thorax 1.0'"), (std::vector<double>{200, 201, 202}));
     EXPECT_EQ(quiet.text(), "");
-    for (const char* bad : {"dataset=4", "dataset=thick", "dataset=9.9"}) {
+    // A number that the list does not have is a SeriesNumber, and never the end of a number.
+    EXPECT_EQ(slices(path(""), "dataset=7"), (std::vector<double>{700, 701}));
+    EXPECT_EQ(slices(path(""), "dataset=46"), (std::vector<double>{400, 401}));
+    EXPECT_EQ(slices(path(""), "dataset=2"), (std::vector<double>{400, 401}));
+    EXPECT_EQ(quiet.text(), "");
+    for (const char* bad : {"dataset=6", "dataset=thick", "dataset=9.9", "dataset=0"}) {
         const osg::ref_ptr<osgDB::Options> options = new osgDB::Options(bad);
         const auto voxels = readVoxels(path(""), options);
         EXPECT_EQ(voxels.status.code, ErrorCode::VALUE_INVALID) << bad;
@@ -487,11 +492,243 @@ TEST_F(Dicom, SlicesOfOnePlaceAreTimeSteps)
     ASSERT_TRUE(source);
     EXPECT_EQ(source->stepCount(), 2);
     EXPECT_EQ(slices(path("")), (std::vector<double>{0, 1, 2, 100, 101, 102}));
-    // Not each place: the first of them.
+}
+
+TEST_F(Dicom, TimeStepsThatLackASliceAreLeftOut)
+{
+    const auto series = [this](const std::string& key, const auto& instanceOf) {
+        for (int t = 0; t < 3; ++t)
+            for (int i = 0; i < 3; ++i) {
+                if (key == "trigger") file.text(0x00181060, "DS", std::to_string(50 * t));
+                if (key == "position") file.text(0x00200100, "IS", std::to_string(3 - t));
+                if (key == "time") file.text(0x00080032, "TM", "10000" + std::to_string(t));
+                file.text(0x00200013, "IS", std::to_string(instanceOf(t, i)));
+                writeSlice(std::to_string(i) + std::to_string(t), "0\\0\\" + std::to_string(i),
+                           100 * t + i);
+            }
+        file.elements.erase(0x00181060);
+        file.elements.erase(0x00200100);
+        file.elements.erase(0x00080032);
+    };
+    const auto expectSteps = [this](const std::string& lost, const std::vector<double>& expected) {
+        fs::remove(path(lost));
+        const Notices notices;
+        EXPECT_EQ(slices(path("")), expected);
+        EXPECT_TRUE(notices.has("1 of 3 time steps lack slices")) << notices.text();
+    };
+    const auto byStep = [](int t, int i) { return 3 * t + i + 1; };
+    const auto byPlace = [](int t, int i) { return 3 * i + t + 1; };
+    const std::vector<double> withoutFirst = {100, 101, 102, 200, 201, 202};
+    for (const char* key : {"trigger", "time", "none"}) {
+        SCOPED_TRACE(key);
+        series(key, byStep);
+        expectSteps("20", withoutFirst);
+        series(key, byPlace);
+        expectSteps("20", withoutFirst);
+        series(key, byStep);
+        expectSteps("01", {0, 1, 2, 200, 201, 202});
+    }
+    series("position", byStep);
+    expectSteps("11", {200, 201, 202, 0, 1, 2});
+    // Where nothing tells steps apart: the first of each place.
+    series("none", [](int, int) { return 1; });
     fs::remove(path("11"));
     const Notices notices;
     EXPECT_EQ(slices(path("")), (std::vector<double>{0, 1, 2}));
-    EXPECT_TRUE(notices.has("2 are left out")) << notices.text();
+    EXPECT_TRUE(notices.has("5 are left out")) << notices.text();
+}
+
+TEST_F(Dicom, StepsAreInTheOrderOfTheirAcquisition)
+{
+    for (int i = 0; i < 3; ++i)
+        for (int t = 0; t < 2; ++t) {
+            file.text(0x00080022, "DA", t ? "20240101" : "20240102"); // past midnight
+            file.text(0x00080032, "TM", t ? "235959" : "000001.5");
+            writeSlice(std::to_string(i) + std::to_string(t), "0\\0\\" + std::to_string(i),
+                       100 * t + i);
+        }
+    EXPECT_EQ(slices(path("")), (std::vector<double>{100, 101, 102, 0, 1, 2}));
+}
+
+TEST_F(Dicom, PlacesOfAStepCanBeALittleOff)
+{
+    file.text(0x00280030, "DS", "1\\1");
+    for (int i = 0; i < 3; ++i)
+        for (int t = 0; t < 3; ++t) {
+            file.text(0x00200100, "IS", std::to_string(t + 1));
+            writeSlice(std::to_string(i) + std::to_string(t),
+                       "0\\0\\" + std::to_string(2 * i + 0.004 * t), 100 * t + i);
+        }
+    const auto source = sourceOf(path(""));
+    ASSERT_TRUE(source);
+    EXPECT_EQ(source->stepCount(), 3);
+    EXPECT_EQ(source->describe().size.z, 3);
+}
+
+TEST_F(Dicom, StationsAreVolumesOfTheirOwn)
+{
+    file.text(0x00280030, "DS", "1\\1");
+    for (int station = 0; station < 2; ++station)
+        for (int i = 0; i < 3 + station; ++i)
+            writeSlice(std::to_string(station) + std::to_string(i),
+                       std::to_string(250 * station) + "\\0\\" + std::to_string(2 * i),
+                       100 * station + i);
+    {
+        const Notices notices;
+        EXPECT_EQ(slices(path("")), (std::vector<double>{100, 101, 102, 103}));
+        EXPECT_TRUE(notices.has("of 2 volumes that lie beside each other")) << notices.text();
+        EXPECT_TRUE(notices.has("the largest is taken, 2;")) << notices.text();
+    }
+    const Notices notices;
+    EXPECT_EQ(slices(path(""), "dataset=1"), (std::vector<double>{0, 1, 2}));
+    EXPECT_EQ(notices.text(), "");
+    EXPECT_EQ(slices(path(""), "dataset=1.2.3"), (std::vector<double>{100, 101, 102, 103}));
+    const auto all = listVolumes(path(""));
+    ASSERT_TRUE(all.ok()) << all.status.text;
+    ASSERT_EQ(all->size(), 2u);
+    EXPECT_TRUE((*all)[1].chosen);
+    EXPECT_NE((*all)[0].text.find("part 1 of 2"), std::string::npos) << (*all)[0].text;
+}
+
+TEST_F(Dicom, CopiesOfAFileAreLeftOut)
+{
+    for (int i = 0; i < 3; ++i) {
+        file.text(0x00080018, "UI", "1.2.3.4." + std::to_string(i));
+        writeSlice(std::to_string(i), "0\\0\\" + std::to_string(i), i);
+        if (i < 2) write("copy" + std::to_string(i));
+    }
+    const Notices notices;
+    EXPECT_EQ(slices(path("")), (std::vector<double>{0, 1, 2}));
+    EXPECT_TRUE(notices.has("2 files are copies")) << notices.text();
+}
+
+TEST_F(Dicom, OneSliceFarFromAllIsSetAside)
+{
+    for (const int z : {0, 1, 2, 3, 90})
+        writeSlice(std::to_string(z), "0\\0\\" + std::to_string(z), z);
+    const Notices notices;
+    EXPECT_EQ(slices(path("")), (std::vector<double>{0, 1, 2, 3}));
+    EXPECT_TRUE(notices.has("the slice at 90 mm is set aside")) << notices.text();
+}
+
+TEST_F(Dicom, DistancesThatDriftAreMadeEven)
+{
+    // Each within rounding, but half of them longer.
+    std::vector<double> at;
+    for (int i = 0; i < 60; ++i) {
+        at.push_back(i < 30 ? i : 30 + 1.018 * (i - 30));
+        writeSlice((i < 10 ? "0" : "") + std::to_string(i), "0\\0\\" + std::to_string(at.back()),
+                   static_cast<int>(std::lround(1000 * at.back())));
+    }
+    const Notices notices;
+    const auto source = sourceOf(path(""));
+    ASSERT_TRUE(source);
+    EXPECT_TRUE(notices.has("not evenly spaced")) << notices.text();
+    const std::vector<double> found = slices(path(""));
+    for (std::size_t k = 0; k < found.size(); ++k)
+        EXPECT_NEAR(found[k], 1000 * placed(*source, {0, 0, double(k)}).z, 25.0) << k;
+}
+
+TEST_F(Dicom, PaddingIsTheLowestOfWhatIsNone)
+{
+    file.setBits(16, 16, 15, true);
+    file.text(0x00281052, "DS", "-1000");
+    file.text(0x00281053, "DS", "1");
+    file.words(0x00280120, "SS", {-2000});
+    file.setValues({-2000, -2000, 5, 6, 7, 8, 9, 10, 11, 12, 13, -2000});
+    EXPECT_EQ(read(write("a.dcm"), VoxelType::INT16),
+              (std::vector<double>{-995, -995, -995, -994, -993, -992, -991, -990, -989, -988, -987,
+                                   -995}));
+    // A range; the same of all slices.
+    file.setBits(16, 16, 15, false);
+    file.words(0x00280120, "US", {65000});
+    file.words(0x00280121, "US", {65535});
+    file.setPlace("0\\0\\0");
+    file.setValues({65000, 65001, 65535, 20, 20, 20, 20, 20, 20, 20, 20, 64999});
+    fs::create_directory(path("1"));
+    write("1/a");
+    writeSlice("1/b", "0\\0\\1", 10);
+    const std::vector<double> both = read(path("1"), VoxelType::INT32);
+    ASSERT_EQ(both.size(), 24u);
+    EXPECT_EQ(std::vector<double>(both.begin(), both.begin() + 4),
+              (std::vector<double>{-990, -990, -990, -980}));
+    EXPECT_EQ(both[11], 63999);
+    // Where values were changed by compression, one is not enough.
+    file.text(0x00282110, "CS", "01");
+    file.elements.erase(0x00280121);
+    file.setValues(std::vector<int>(12, 65000));
+    EXPECT_EQ(read(write("c.dcm"), VoxelType::UINT16)[0], 64000);
+    // Nothing else.
+    file.text(0x00282110, "CS", "");
+    EXPECT_EQ(read(write("b.dcm"), VoxelType::UINT16), std::vector<double>(12, 0.0));
+}
+
+TEST_F(Dicom, FramesThatAFileCannotHaveAreRefused)
+{
+    file.text(0x00280008, "IS", "1048576");
+    const Status plain = statusOf();
+    EXPECT_EQ(plain.code, ErrorCode::FILE_UNREADABLE);
+    EXPECT_NE(plain.text.find("has 24 bytes of pixels, which need 25165824"), std::string::npos)
+        << plain.text;
+    file.syntax = "1.2.840.10008.1.2.4.90";
+    const Status packed = statusOf();
+    EXPECT_EQ(packed.code, ErrorCode::FILE_UNREADABLE);
+    EXPECT_NE(packed.text.find("even compressed 8388608"), std::string::npos) << packed.text;
+}
+
+TEST_F(Dicom, FramesOfNuclearMedicineLieWhereTheirDetectorSays)
+{
+    file.setSize(2, 2);
+    file.text(0x00280008, "IS", "3");
+    file.text(0x00280030, "DS", "4\\4");
+    file.text(0x00180050, "DS", "5");
+    file.text(0x00180088, "DS", "-5");
+    file.sequence(0x00540022, {{{0x00200032, {"DS", "-10\\-20\\50"}},
+                                {0x00200037, {"DS", "1\\0\\0\\0\\1\\0"}}}});
+    file.setValues({1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3});
+    const auto down = sourceOf(write("a.dcm"));
+    ASSERT_TRUE(down);
+    EXPECT_EQ(placed(*down, {0, 0, 0}), glm::dvec3(-10, -20, 40));
+    EXPECT_EQ(placed(*down, {0, 0, 2}), glm::dvec3(-10, -20, 50));
+    EXPECT_EQ(valuesOf(*down)[0], 3);
+    file.words(0x00540080, "US", {2, 1, 3}); // which slice each is
+    EXPECT_EQ(valuesOf(*sourceOf(write("b.dcm")))[4], 1);
+}
+
+TEST_F(Dicom, SegmentsAreTheirNumbers)
+{
+    file.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.66.4");
+    file.setSize(4, 2);
+    file.setBits(1, 1, 0, false);
+    file.text(0x00280008, "IS", "4");
+    const auto sequence = [](const Elements& item) {
+        return std::pair<std::string, std::string>("SQ", DicomFile::encodeItems({item}));
+    };
+    std::vector<Elements> frames;
+    for (const auto& [segment, z] : {std::pair(1, 0), {1, 2}, {7, 2}, {7, 8}})
+        frames.push_back(
+            {{0x00209113, sequence({{0x00200032, {"DS", "0\\0\\" + std::to_string(z)}}})},
+             {0x0062000a, sequence({{0x0062000b, {"US", DicomFile::number16(segment)}}})}});
+    file.sequence(0x52009230, frames);
+    file.elements[0x7fe00010] = {"OB", std::string("\x01\x0f\x18\x80", 4)};
+    const Notices notices;
+    const auto source = sourceOf(write("a.dcm"));
+    ASSERT_TRUE(source);
+    EXPECT_EQ(notices.text(), "");
+    EXPECT_EQ(source->describe().spacing.z, 2.0);
+    EXPECT_EQ(source->describe().type, VoxelType::UINT8);
+    // Where no frame is there is nothing.
+    EXPECT_EQ(valuesOf(*source),
+              (std::vector<double>{1, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 7, 7, 0, 0, 0, 0, 0, 0, 0,
+                                   0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7}));
+    // Fractions of several are no labels.
+    file.setBits(8, 8, 7, false);
+    file.elements[0x7fe00010] = {"OB", std::string(32, '\1')};
+    file.sequence(0x00620002, {{{0x00620004, {"US", DicomFile::number16(1)}}},
+                               {{0x00620004, {"US", DicomFile::number16(7)}}}});
+    const Status fractions = statusOf();
+    EXPECT_EQ(fractions.code, ErrorCode::NOT_SUPPORTED);
+    EXPECT_NE(fractions.text.find("segments of fractions"), std::string::npos) << fractions.text;
 }
 
 TEST_F(Dicom, DarkIsDenseInMonochrome1)
@@ -566,8 +803,78 @@ TEST_F(Dicom, PetValuesAreUptakes)
         EXPECT_EQ(notices.text(), "");
     }
     file.text(0x00101030, "DS", "");
+    {
+        const Notices notices;
+        EXPECT_EQ(read(write("a.dcm"), VoxelType::FLOAT32)[0], 2500);
+        EXPECT_TRUE(notices.has("no SUV: the weight of the patient")) << notices.text();
+    }
+    file.text(0x00541001, "CS", "GML"); // SUV already
     const Notices notices;
     EXPECT_EQ(read(write("a.dcm"), VoxelType::FLOAT32)[0], 2500);
+    EXPECT_EQ(notices.text(), "");
+}
+
+TEST_F(Dicom, PetTimesHaveDates)
+{
+    file.text(0x00080060, "CS", "PT");
+    file.text(0x00541001, "CS", "BQML");
+    file.text(0x00541102, "CS", "START");
+    file.text(0x00101030, "DS", "70");
+    file.text(0x00281053, "DS", "2.5");
+    file.setValues(std::vector<int>(12, 1000));
+    // Decay over `hours`; below 0: as stored, since `why`.
+    const auto expectDecay = [&](const std::string& given, double halfLife, double hours,
+                                 const char* why = "") {
+        const bool dated = given.size() > 6;
+        file.sequence(0x00540016,
+                      {{{dated ? 0x00181078u : 0x00181072u, {dated ? "DT" : "TM", given}},
+                        {0x00181074, {"DS", "4e8"}},
+                        {0x00181075, {"DS", std::to_string(halfLife)}}}});
+        const double expected =
+            hours < 0 ? 2500.0 : 2500.0 * 70000.0 / (4e8 * std::exp2(-3600.0 * hours / halfLife));
+        const Notices notices;
+        EXPECT_NEAR(read(write("a.dcm"), VoxelType::FLOAT32)[0], expected, 1e-6 * expected)
+            << given;
+        EXPECT_TRUE(notices.has(why)) << notices.text();
+        EXPECT_EQ(notices.text().empty(), hours >= 0) << notices.text();
+    };
+    file.text(0x00080021, "DA", "20240301");
+    file.text(0x00080031, "TM", "101500");
+    expectDecay("20240228091500", 282276.0, 49); // over a leap day
+    expectDecay("20240228091500.000000+0100", 282276.0, 49);
+    expectDecay("20240301101600", 6588.0, -1, "the scan is earlier than the injection");
+    expectDecay("20240229091500", 6588.0, -1, "more than 10 half lives");
+    expectDecay("091500", 6588.0, 1);
+    expectDecay("101600", 6588.0, -1, "more than 12 hours");
+    // Pictures of before: their series was stored anew.
+    file.text(0x00080022, "DA", "20240301");
+    file.text(0x00080032, "TM", "100000");
+    file.text(0x00080031, "TM", "143000");
+    expectDecay("20240301090000", 6588.0, 1);
+    file.text(0x00080032, "TM", "150000"); // a later bed position
+    expectDecay("20240301133000", 6588.0, 1);
+}
+
+TEST_F(Dicom, APetSeriesIsScaledAsAWhole)
+{
+    file.text(0x00080060, "CS", "PT");
+    file.text(0x00541001, "CS", "BQML");
+    file.text(0x00541102, "CS", "START");
+    file.text(0x00101030, "DS", "70");
+    file.text(0x00080031, "TM", "110000");
+    const Elements drug = {
+        {0x00181072, {"TM", "090000"}}, {0x00181074, {"DS", "4e8"}}, {0x00181075, {"DS", "3600"}}};
+    file.sequence(0x00540016, {drug});
+    for (int i = 0; i < 3; ++i) {
+        file.text(0x00080032, "TM", "10" + std::to_string(i) + "000"); // from 10 on
+        writeSlice(std::to_string(i), "0\\0\\" + std::to_string(i), 1000);
+    }
+    for (const double v : slices(path("")))
+        EXPECT_NEAR(v, 1000 * 70000 / (4e8 * 0.5), 1e-6);
+    file.text(0x00101030, "DS", "");
+    writeSlice("2", "0\\0\\2", 1000);
+    const Notices notices;
+    EXPECT_EQ(slices(path("")), (std::vector<double>{1000, 1000, 1000}));
     EXPECT_TRUE(notices.has("no SUV: the weight of the patient")) << notices.text();
 }
 

@@ -148,6 +148,25 @@ TEST_F(Itk, WhatIsWrittenIsReadBackToTheBit)
             }
 }
 
+TEST_F(Itk, SamplesBesideAHeaderReplaceNoOtherFile)
+{
+    const Memory source = numbered(skewed(VoxelType::INT16, 1));
+    for (const std::string name : {"a.mhd", "a.nhdr"}) {
+        writeBytes("a.raw", "of somebody");
+        ASSERT_TRUE(writeVoxels(*source, path(name)).ok());
+        EXPECT_EQ(fs::file_size(path("a.raw")), 11u);
+        EXPECT_EQ(fs::file_size(path(name + ".raw")), 120u);
+        ASSERT_TRUE(writeVoxels(*source, path(name)).ok()); // its own
+        EXPECT_EQ(valuesOf(*sourceOf(path(name))), valuesOf(*source));
+        fs::remove(path(name));
+        const Status status = writeVoxels(*source, path(name));
+        EXPECT_EQ(status.code, ErrorCode::FILE_UNREADABLE);
+        EXPECT_NE(status.text.find("there already"), std::string::npos) << status.text;
+        EXPECT_FALSE(fs::exists(path(name)));
+        EXPECT_EQ(fs::file_size(path(name + ".raw")), 120u);
+    }
+}
+
 TEST_F(Itk, LongVolumesAreNifti2)
 {
     VoxelSource::Description d;
@@ -201,6 +220,34 @@ TEST_F(Itk, ANiftiLiesWhereItsSformSays)
         ASSERT_TRUE(small);
         expectPlace(*small, {0, 0, 0}, {0.01, -0.02, -0.03}, 1e-12);
     }
+}
+
+TEST_F(Itk, AnSformThatSpansNoVolumeIsNotTaken)
+{
+    Nifti file;
+    file.setSform(std::vector<float>(12, 0.0f));
+    const auto opened = [&](const std::string& told) {
+        const Notices notices;
+        const auto source = sourceOf(writeBytes("a.nii", file.bytes));
+        EXPECT_EQ(notices.text().empty(), told.empty()) << notices.text();
+        EXPECT_TRUE(notices.has(told)) << notices.text();
+        return source;
+    };
+    const auto bare = opened("lies where its spacing says");
+    ASSERT_TRUE(bare);
+    expectPlace(*bare, {0.5, 1, 0.5}, {0, 0, 0}, 1e-6);
+    put<std::int16_t>(file.bytes, 252, 1);
+    put<float>(file.bytes, 268, 5.0f);
+    const auto turned = opened("lies where its qform says");
+    ASSERT_TRUE(turned);
+    expectPlace(*turned, {0, 1, 1}, {-5, -2, 3}, 1e-6);
+    // A single slice needs no third axis.
+    file.setSize({2, 3, 4, 1, 1, 1, 1, 1});
+    file.setSform({0, 2, 0, 1, 2, 0, 0, 1, 0, 0, 0, 1});
+    const auto slice = opened("");
+    ASSERT_TRUE(slice);
+    expectPlace(*slice, {1, 0, 0}, {-1, -3, 1}, 1e-6);
+    EXPECT_EQ(slice->describe().spacing, glm::dvec3(2, 2, 3));
 }
 
 TEST_F(Itk, ANiftiWithoutSformLiesByItsQuaternion)
@@ -300,6 +347,20 @@ TEST_F(Itk, AnalyzeIsAPairOfFiles)
         EXPECT_EQ(valuesOf(*source)[0], -3);
         EXPECT_EQ(source->describe().spacing, glm::dvec3(1, 2, 3));
     }
+    // SPM's scale, as nibabel takes it, and transform.
+    put<float>(file.bytes, 112, 0.5f);
+    writeBytes("a.hdr", file.bytes.substr(0, 348));
+    {
+        const Notices notices;
+        EXPECT_EQ(valuesOf(*sourceOf(path("a.hdr")))[0], -1.5);
+        EXPECT_EQ(notices.text(), "");
+    }
+    put<float>(file.bytes, 112, std::numeric_limits<float>::quiet_NaN());
+    writeBytes("a.hdr", file.bytes.substr(0, 348));
+    writeBytes("a.mat", "");
+    const Notices notices;
+    EXPECT_EQ(valuesOf(*sourceOf(path("a.img")))[0], -3);
+    EXPECT_TRUE(notices.has("a.mat is not applied")) << notices.text();
 }
 
 TEST_F(Itk, ANrrdLiesWhereItSaysInEverySpace)
@@ -316,7 +377,81 @@ TEST_F(Itk, ANrrdLiesWhereItSaysInEverySpace)
     };
     EXPECT_LT(glm::distance(placed("left-posterior-superior"), {12, 21.5, 34}), 1e-9);
     EXPECT_LT(glm::distance(placed("right-anterior-superior"), {-12, -21.5, 34}), 1e-9);
-    EXPECT_LT(glm::distance(placed("left-anterior-superior"), {12, -21.5, 34}), 1e-9);
+    for (const char* space : {"left-anterior-superior", "Left-Anterior-Superior", "LAS", "las"})
+        EXPECT_LT(glm::distance(placed(space), {12, -21.5, 34}), 1e-9) << space;
+    EXPECT_LT(glm::distance(placed("ras"), {-12, -21.5, 34}), 1e-9);
+}
+
+TEST_F(Itk, ANrrdWithTimeLiesWhereItSaysInEverySpace)
+{
+    const auto placed = [&](const std::string& space) {
+        const auto source = sourceOf(
+            writeBytes("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nspace: " + space +
+                                     "\nsizes: 2 1 1 2\nspace directions: (2,0,0,0) (0,3,0,0) "
+                                     "(0,0,4,0) (0,0,0,1)\nencoding: raw\n"
+                                     "space origin: (10,20,30,0)\n\n\1\2\3\4"));
+        EXPECT_TRUE(source);
+        EXPECT_EQ(source->stepCount(), 2);
+        return io::placeOf(source->describe(), {1, 0, 0});
+    };
+    for (const char* space : {"left-posterior-superior-time", "LPST"})
+        EXPECT_LT(glm::distance(placed(space), {12, 20, 30}), 1e-9) << space;
+    for (const char* space : {"right-anterior-superior-time", "RAST"})
+        EXPECT_LT(glm::distance(placed(space), {-12, -20, 30}), 1e-9) << space;
+    for (const char* space : {"left-anterior-superior-time", "LAST"})
+        EXPECT_LT(glm::distance(placed(space), {12, -20, 30}), 1e-9) << space;
+}
+
+TEST_F(Itk, OtherUnitsOfLengthBecomeMillimetres)
+{
+    const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 1 2\nencoding: raw\n";
+    const auto step = [&](const std::string& name, const std::string& bytes) {
+        const auto source = sourceOf(writeBytes(name, bytes));
+        EXPECT_TRUE(source);
+        return source ? io::placeOf(source->describe(), {1, 0, 1}) : glm::dvec3(0.0);
+    };
+    const auto spaced = [&](const std::string& unit) {
+        const std::string quoted = " \"" + unit + "\"";
+        return step("a.nrrd", nrrd + "space: LPS\nspace units:" + quoted + quoted + quoted +
+                                  "\nspace directions: (2,0,0) (0,2,0) (0,0,3)\n"
+                                  "space origin: (5,6,7)\n\n\1\2\3\4");
+    };
+    EXPECT_LT(glm::distance(spaced("mm"), {7, 6, 10}), 1e-9);
+    EXPECT_LT(glm::distance(spaced("cm"), {70, 60, 100}), 1e-9);
+    EXPECT_LT(glm::distance(spaced("m"), {7000, 6000, 10000}), 1e-9);
+    for (const char* unit : {"um", "\xc2\xb5m", "Microns", "micrometer"})
+        EXPECT_LT(glm::distance(spaced(unit), {0.007, 0.006, 0.01}), 1e-9) << unit;
+    const glm::dvec3 bare = step("b.nrrd", nrrd + "units: \"um\" \"um\" \"um\"\nspacings: 2 2 3\n"
+                                                  "centerings: node node node\n\n\1\2\3\4");
+    EXPECT_LT(glm::distance(bare, {0.002, 0, 0.003}), 1e-9);
+    const std::string meta = "ObjectType = Image\nNDims = 3\nDimSize = 2 1 2\nOffset = 5 6 7\n"
+                             "ElementSpacing = 2 2 3\nElementType = MET_UCHAR\n";
+    const std::string data = "ElementDataFile = LOCAL\n\1\2\3\4";
+    EXPECT_LT(
+        glm::distance(step("a.mha", meta + "DistanceUnits = um\n" + data), {0.007, 0.006, 0.01}),
+        1e-9);
+    EXPECT_LT(glm::distance(step("b.mha", meta + "DistanceUnits = cm\n" + data), {70, 60, 100}),
+              1e-9);
+}
+
+TEST_F(Itk, TheUnitOfMicroscopesIsTold)
+{
+    std::string head(1024, '\0');
+    const std::int32_t size[] = {2, 1, 2, 0};
+    for (std::size_t i = 0; i < 4; ++i)
+        put<std::int32_t>(head, 4 * i, size[i]);
+    for (std::size_t i = 0; i < 3; ++i) {
+        put<std::int32_t>(head, 28 + 4 * i, size[i]);
+        put<float>(head, 40 + 4 * i, float(3 * size[i]));
+        put<float>(head, 52 + 4 * i, 90.0f);
+        put<std::int32_t>(head, 64 + 4 * i, std::int32_t(i) + 1);
+    }
+    head.replace(208, 8, std::string("MAP \x44\x44\0\0", 8));
+    const Notices notices;
+    const auto source = sourceOf(writeBytes("a.mrc", head + "\1\2\3\4"));
+    ASSERT_TRUE(source);
+    EXPECT_EQ(source->describe().spacing, glm::dvec3(3));
+    EXPECT_TRUE(notices.has("its unit of length is the \xc3\xa5ngstr\xc3\xb6m")) << notices.text();
 }
 
 TEST_F(Itk, DamagedFilesAreRefusedBeforeThereIsMemory)
