@@ -402,6 +402,9 @@ TEST_F(Gdal, WhatNetCdfFillsIntegersWithIsMissing)
         file.array(file.root(), "scaled", {z, y, x}, filled, GDT_Int16, {{"scale_factor", 0.5}});
         file.array(file.root(), "said", {z, y, x}, filled, GDT_Int16, {{"missing_value", 1}});
         file.array(file.root(), "never", {z, y, x}, std::vector<std::int32_t>(), GDT_Int32);
+        const auto uneven = file.dimension("height", 3, {0, 1, 3}, "m");
+        file.array(file.root(), "between", {uneven, y, x},
+                   std::vector<std::int16_t>{0, 1, 2, 3, -32767, 5, 6, 7, 8, 9, 10, 11}, GDT_Int16);
     }
     const auto holesOf = [this](const std::string& name, VoxelType type) {
         const auto source = open("filled.nc", "dataset=" + name);
@@ -415,6 +418,7 @@ TEST_F(Gdal, WhatNetCdfFillsIntegersWithIsMissing)
     EXPECT_EQ(all<float>(*open("filled.nc", "dataset=scaled"))[7], -16384.0f);
     EXPECT_EQ(all<float>(*open("filled.nc", "dataset=said"))[2], -32767.0f);
     EXPECT_EQ(holesOf("never", VoxelType::FLOAT64), 8);
+    EXPECT_EQ(holesOf("between", VoxelType::FLOAT32), 1);
     const auto entries = listVolumes(path("filled.nc"));
     ASSERT_TRUE(entries.ok()) << entries.status.text;
     EXPECT_EQ(entries->front().name, "/plain");
