@@ -49,6 +49,20 @@ int inVolume(const Axis& axis, int i, int level)
 
 } // namespace
 
+void unwrapDegrees(std::vector<double>& values)
+{
+    if (values.size() < 3 || risesOrFalls(values)) return;
+    double turns = 0.0;
+    std::vector<double> unwrapped = values;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        const double jump = values[i] - values[i - 1];
+        if (std::fabs(jump) > 180.0 && std::fabs(jump) <= 360.0)
+            turns -= std::copysign(360.0, jump);
+        unwrapped[i] += turns;
+    }
+    if (risesOrFalls(unwrapped)) values = unwrapped;
+}
+
 void placeSamples(Axis& axis, const std::vector<double>& values, double precision, int most,
                   std::vector<std::string>& notices)
 {

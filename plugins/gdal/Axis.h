@@ -20,6 +20,10 @@ struct Axis
     std::string name, unit;
 };
 
+/// Lets longitudes that cross the date line, and so jump by a turn, go on beyond it: 170, 180, 190.
+/// Others, and whatever neither rises nor falls then, stay as they are.
+void unwrapDegrees(std::vector<double>& values);
+
 /// Places the samples of an axis at coordinates, one for each, which rise or fall: as they are
 /// where they lie evenly, to 1e-4 of a step or what numbers of `precision` can tell; else the axis
 /// gets an even grid as fine as the smallest gap, but at most `most` samples. What is done about

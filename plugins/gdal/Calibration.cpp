@@ -47,6 +47,29 @@ void findValid(const GDALMDArray& array, Calibration& c)
     }
 }
 
+// NC_FILL_SHORT and the like, unless the file itself says what is missing.
+std::optional<double> fillingOf(const GDALMDArray& array)
+{
+    bool said = false;
+    array.GetNoDataValueAsDouble(&said);
+    for (const char* name :
+         {"_FillValue", "missing_value", "valid_range", "valid_min", "valid_max"})
+        said = said || array.GetAttribute(name);
+    if (said) return std::nullopt;
+    switch (array.GetDataType().GetNumericDataType()) {
+    case GDT_Int16:
+        return -32767.0;
+    case GDT_UInt16:
+        return 65535.0;
+    case GDT_Int32:
+        return -2147483647.0;
+    case GDT_UInt32:
+        return 4294967295.0;
+    default:
+        return std::nullopt;
+    }
+}
+
 } // namespace
 
 bool Calibration::hasHoles() const
@@ -90,6 +113,12 @@ Calibration calibrationOf(const GDALMDArray& array, const std::string& driver)
     std::sort(c.missing.begin(), c.missing.end());
     c.missing.erase(std::unique(c.missing.begin(), c.missing.end()), c.missing.end());
     findValid(array, c);
+    if (driver != "netCDF" || c.hasHoles()) return c;
+    // Values that are floats anyway have room for holes.
+    if (c.isPlain())
+        c.filling = fillingOf(array);
+    else if (const auto filling = fillingOf(array))
+        c.missing.push_back(*filling);
     return c;
 }
 

@@ -46,7 +46,8 @@ Result<std::shared_ptr<const File>> File::open(const std::string& path)
     const Session session;
     std::shared_ptr<File> file(new File);
     file->_path = path;
-    bool present = false;
+    bool present = false, opened = false;
+    std::string reason;
     for (const char* driver : driversFor(path)) {
         if (!GetGDALDriverManager()->GetDriverByName(driver)) continue;
         present = true;
@@ -57,13 +58,15 @@ Result<std::shared_ptr<const File>> File::open(const std::string& path)
             drivers, nullptr, nullptr);
         if (file->_dataset) file->_variables = variablesOf(file->_dataset->GetRootGroup());
         if (!file->_variables.empty()) return std::shared_ptr<const File>(file);
+        // What a driver says that cannot open what another can does not matter.
+        if (file->_dataset || !opened) reason = session.reason();
+        opened = opened || file->_dataset;
         if (file->_dataset) GDALClose(GDALDataset::ToHandle(file->_dataset));
         file->_dataset = nullptr;
     }
     if (!present)
         return Status(ErrorCode::NOT_SUPPORTED,
                       path + " is of a format that this build of GDAL has no driver for");
-    const std::string reason = session.reason();
     return Status(ErrorCode::FILE_UNREADABLE,
                   path + (reason.empty() ? " has no volume: no variable of numbers with two axes"
                                          : " cannot be read" + reason));

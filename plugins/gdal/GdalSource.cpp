@@ -55,46 +55,74 @@ Status GdalSource::open(const std::string& path, const std::string& dataset,
     if (!file.ok()) return file.status;
     const Result<std::size_t> chosen = (*file)->choose(dataset);
     if (!chosen.ok()) return chosen.status;
-    const Variable& variable = (*file)->variables()[*chosen];
-    const Result<Layout> layout = layoutOf(variable, dimensions, (*file)->driver());
-    if (!layout.ok())
-        return {layout.status.code, path + ": " + layout.status.text, layout.status.index};
-    _path = path;
-    _layout = *layout;
-    _file = *file;
-    _variable = *chosen;
+    if (Status status = open(path, *file, *chosen, dimensions); !status.ok()) return status;
     if (dataset.empty() && _file->variables().size() > 1)
-        _layout.notices.insert(_layout.notices.begin(),
-                               variable.path + " is read, of " + _file->names());
-    const auto isLarge = [this] {
-        return _layout.description.sizeInBytes() > getPagingBudget().memoryBytes / 2;
-    };
-    if (areLongs(*variable.array) && _layout.description.type == VoxelType::FLOAT64 &&
-        _layout.calibration.isPlain() && !isLarge())
-        narrowLongs();
-    if (isLarge() || _layout.steps > 1)
-        _levelCount = core::BrickTree::levelsFor(_layout.description.size, pageSize());
+        _layout.notices.insert(_layout.notices.begin(), _file->variables()[_variable].path +
+                                                            " is read, of " + _file->names());
     for (const std::string& notice : _layout.notices)
         OSG_NOTICE << "osgVolumizer: " << path << ": " << notice << std::endl;
     return {};
 }
 
-// Reads all; what cannot be read is found out by others.
-void GdalSource::narrowLongs()
+Status GdalSource::open(const std::string& path, const std::shared_ptr<const File>& file,
+                        std::size_t variable, const std::string& dimensions)
+{
+    const Session session;
+    const Result<Layout> layout = layoutOf(file->variables()[variable], dimensions, file->driver());
+    if (!layout.ok())
+        return {layout.status.code, path + ": " + layout.status.text, layout.status.index};
+    _path = path;
+    _layout = *layout;
+    _file = file;
+    _variable = variable;
+    const std::int64_t most = getPagingBudget().memoryBytes / 2;
+    settleType(most);
+    if (_layout.steps > 1 || _layout.description.sizeInBytes() > most)
+        _levelCount = core::BrickTree::levelsFor(_layout.description.size, pageSize());
+    return {};
+}
+
+void GdalSource::settleType(std::int64_t mostBytes)
+{
+    const std::optional<double> filling = _layout.calibration.filling;
+    const bool longs = areLongs(*_file->variables()[_variable].array) &&
+                       _layout.description.type == VoxelType::FLOAT64 &&
+                       _layout.calibration.isPlain();
+    if ((!longs && !filling) ||
+        double(_layout.description.sizeInBytes()) * _layout.steps > double(mostBytes))
+        return;
+    for (const Axis& axis : _layout.axes)
+        if (!axis.places.empty()) return;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    bool filled = false;
+    const bool all = readSlices([&](const std::vector<double>& slice) {
+        const auto [least, most] = std::minmax_element(slice.begin(), slice.end());
+        low = std::min(low, *least);
+        high = std::max(high, *most);
+        filled = filling && std::find(slice.begin(), slice.end(), *filling) != slice.end();
+        return !filled;
+    });
+    if (longs && all) _layout.numbers = _layout.description.type = narrowest(low, high);
+    if (!filled) return;
+    _layout.calibration.missing = {*filling};
+    _layout.description.type = valueType(_layout.numbers, _layout.calibration, false);
+}
+
+// Of the file, as numbers. What cannot be read is found out by others.
+bool GdalSource::readSlices(const std::function<bool(const std::vector<double>&)>& visit) const
 {
     const glm::ivec3 size = _layout.description.size;
     std::vector<double> slice(std::size_t(size.x) * size.y);
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    Fetch fetch[3];
+    for (int axis = 0; axis < 2; ++axis)
+        fetch[axis] = fetchOf(_layout.axes[axis], 0, size[axis], 0);
     for (int step = 0; step < _layout.steps; ++step)
         for (int z = 0; z < size.z; ++z) {
-            if (!readFrom(step, 0, {{0, 0, z}, {size.x, size.y, z + 1}}, slice.data()).ok()) return;
-            const auto [least, most] = std::minmax_element(slice.begin(), slice.end());
-            low = std::min(low, *least);
-            high = std::max(high, *most);
+            fetch[2] = fetchOf(_layout.axes[2], z, z + 1, 0);
+            if (!readNumbers(step, fetch, VoxelType::FLOAT64, slice.data()).ok() || !visit(slice))
+                return false;
         }
-    for (const Axis& axis : _layout.axes)
-        if (!axis.places.empty()) return;
-    _layout.numbers = _layout.description.type = narrowest(low, high);
+    return true;
 }
 
 Status GdalSource::readStep(int step, int level, const core::Box3i& region, void* destination) const

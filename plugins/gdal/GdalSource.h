@@ -5,9 +5,12 @@
 
 #include <osgVolumizer/VoxelSource.h>
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace osgVolumizer {
 namespace gdal {
@@ -29,6 +32,10 @@ public:
     /// The text of a failure begins with the path.
     Status open(const std::string& path, const std::string& dataset, const std::string& dimensions);
 
+    /// The same of a variable that is known, of a file that is open; nothing is told of it.
+    Status open(const std::string& path, const std::shared_ptr<const File>& file,
+                std::size_t variable, const std::string& dimensions);
+
     Description describe() const override { return _layout.description; }
     Status read(const core::Box3i& region, void* destination) const override
     {
@@ -47,7 +54,11 @@ protected:
     ~GdalSource() override = default;
 
 private:
-    void narrowLongs();
+    /// Gives 64-bit integers the narrowest type that holds them, and values with what NetCDF fills
+    /// them one with holes, where all steps together have no more than `mostBytes`: reads all.
+    void settleType(std::int64_t mostBytes);
+    /// Calls `visit` for one after another, until it is false; true where it never was.
+    bool readSlices(const std::function<bool(const std::vector<double>&)>& visit) const;
     Status readFrom(int step, int level, const core::Box3i& region, void* destination) const;
     Status readNumbers(int step, const Fetch (&fetch)[3], VoxelType type, void* destination) const;
 

@@ -48,13 +48,34 @@ double extent(const Axis& axis)
     return std::fabs(axis.step) * (axis.size - 1);
 }
 
-// Degrees beside metres, or beside a pressure, make a volume that nobody sees.
+// Kilometres beside metres; true where all three are lengths, and nothing is left to do.
+bool matchLengths(Layout& layout)
+{
+    double metres[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto length = metresOf(layout.axes[axis].unit);
+        if (!length) return false;
+        metres[axis] = *length;
+    }
+    if (metres[0] == metres[1] && metres[1] == metres[2]) return true;
+    std::string units;
+    for (int axis = 0; axis < 3; ++axis) {
+        scale(layout.axes[axis], metres[axis]);
+        units += (axis ? ", " : "") + layout.axes[axis].unit;
+    }
+    layout.notices.push_back("coordinates in " + units +
+                             " become metres along all axes; spacing= says otherwise");
+    return true;
+}
+
+// Degrees beside metres, or either beside a pressure, make a volume that nobody sees.
 void matchUnits(Layout& layout)
 {
     Axis &x = layout.axes[0], &y = layout.axes[1], &z = layout.axes[2];
-    if (!x.known || !y.known || !z.known || !isDegrees(x.unit) || !isDegrees(y.unit) ||
-        isDegrees(z.unit))
-        return;
+    if (!x.known || !y.known || !z.known || matchLengths(layout)) return;
+    const bool degrees = isDegrees(x.unit) && isDegrees(y.unit);
+    const bool lengths = metresOf(x.unit) && metresOf(x.unit) == metresOf(y.unit);
+    if ((!degrees && !lengths) || isDegrees(z.unit)) return;
     if (const auto metres = metresOf(z.unit)) {
         const double latitude = (y.first + 0.5 * y.step * (y.size - 1)) * std::acos(-1.0) / 180.0;
         scale(x, METRES_PER_DEGREE * std::max(std::cos(latitude), 0.01));
@@ -64,7 +85,7 @@ void matchUnits(Layout& layout)
             "degrees become metres along the axes, as at latitude " +
             core::formatNumber(y.first / METRES_PER_DEGREE +
                                0.5 * y.step / METRES_PER_DEGREE * (y.size - 1)) +
-            ", to go with " + z.name);
+            ", to go with " + z.name + "; spacing= says otherwise");
         return;
     }
     constexpr double FLAT = 20.0, SHAPELY = 0.25; // to the longer of the others
@@ -73,8 +94,35 @@ void matchUnits(Layout& layout)
     const double factor = SHAPELY * across / up;
     scale(z, factor);
     layout.notices.push_back(z.name + (z.unit.empty() ? "" : " (" + z.unit + ")") + " is drawn " +
-                             core::formatNumber(factor) +
-                             " times as long, to go with degrees; spacing= says otherwise");
+                             core::formatNumber(factor) + " times as long, to go with " +
+                             (degrees ? "degrees" : x.unit) + "; spacing= says otherwise");
+}
+
+// As it says itself, or as pressures and depths are.
+bool isPositiveDown(const GDALMDArray& coordinates)
+{
+    const auto lower = [](const std::string& text) { return osgDB::convertToLowerCase(text); };
+    const std::string positive = lower(textAttribute(coordinates, "positive"));
+    if (positive == "down" || positive == "up") return positive == "down";
+    const std::string unit = lower(unitOf(coordinates));
+    for (const char* name :
+         {"pa", "hpa", "mbar", "mb", "millibar", "millibars", "bar", "dbar", "kpa"})
+        if (unit == name) return true;
+    return lower(textAttribute(coordinates, "standard_name")) == "depth" ||
+           lower(coordinates.GetName()) == "depth";
+}
+
+// How exactly the file holds coordinates: doubles may have been floats before.
+double precisionOf(const GDALMDArray& coordinates, const std::vector<double>& values)
+{
+    constexpr double OF_FLOATS = std::numeric_limits<float>::epsilon();
+    if (typeOf(coordinates) == VoxelType::FLOAT32) return OF_FLOATS;
+    bool whole = true, floats = true;
+    for (const double value : values) {
+        whole = whole && value == std::floor(value);
+        floats = floats && value == double(static_cast<float>(value));
+    }
+    return floats && !whole ? OF_FLOATS : std::numeric_limits<double>::epsilon();
 }
 
 Axis axisOf(const Variable& variable, int dimension, bool upright, double samplesOfOthers,
@@ -89,14 +137,13 @@ Axis axisOf(const Variable& variable, int dimension, bool upright, double sample
     const Array coordinates = coordinateArray(*variable.group, d);
     if (!coordinates) return axis;
     axis.unit = oneLine(unitOf(*coordinates));
-    const bool floats = typeOf(*coordinates) == VoxelType::FLOAT32;
     const double most = double(MOST_INTERPOLATED) / 8.0 / std::max(samplesOfOthers, 1.0);
-    placeSamples(axis, coordinateValues(*coordinates),
-                 floats ? std::numeric_limits<float>::epsilon()
-                        : std::numeric_limits<double>::epsilon(),
+    std::vector<double> values = coordinateValues(*coordinates);
+    const double precision = precisionOf(*coordinates, values);
+    if (!upright && isDegrees(axis.unit)) unwrapDegrees(values);
+    placeSamples(axis, values, precision,
                  int(std::min(most, double(std::numeric_limits<int>::max()))), notices);
-    const bool down = osgDB::convertToLowerCase(textAttribute(*coordinates, "positive")) == "down";
-    if (upright && down) scale(axis, -1.0);
+    if (upright && isPositiveDown(*coordinates)) scale(axis, -1.0);
     return axis;
 }
 
@@ -185,6 +232,10 @@ Result<Layout> layoutOf(const Variable& variable, const std::string& dimensions,
     bool interpolated = false;
     for (const Axis& axis : layout.axes)
         interpolated = interpolated || !axis.places.empty();
+    if (interpolated && layout.calibration.filling) {
+        layout.calibration.missing = {*layout.calibration.filling};
+        layout.calibration.filling.reset();
+    }
     layout.description.type = valueType(layout.numbers, layout.calibration, interpolated);
     if (Status status = layout.description.validate(); !status.ok()) return status;
     return layout;

@@ -25,9 +25,10 @@ struct Layout
 };
 
 /// Where the voxels of a variable lie: in the units of its coordinates, with z upwards where the
-/// file says that they are positive downwards; in metres where x and y are degrees and z is a
-/// length. VALUE_INVALID, TOO_LARGE; texts lack the path. Expects a Session.
-/// \param dimensions as said, or empty \param driver as calibrationOf()
+/// file says that they are positive downwards, or they are pressures or depths and it says nothing;
+/// in metres where x and y are degrees and z is a length, or all are lengths of several units.
+/// VALUE_INVALID, TOO_LARGE; texts lack the path. Expects a Session. \param dimensions as said, or
+/// empty \param driver as calibrationOf()
 Result<Layout> layoutOf(const Variable& variable, const std::string& dimensions,
                         const std::string& driver);
 

@@ -42,18 +42,18 @@ protected:
         for (std::size_t i = 0; i < (*file)->variables().size(); ++i) {
             const Variable& variable = (*file)->variables()[i];
             const bool isChosen = i == *chosen;
-            const Result<Layout> layout = layoutOf(
-                variable, isChosen ? request.dimensions : std::string(), (*file)->driver());
-            if (!layout.ok() && isChosen)
-                return Status(layout.status.code, request.path + ": " + layout.status.text);
-            if (!layout.ok()) continue;
-            const VoxelSource::Description& d = layout->description;
+            const osg::ref_ptr<GdalSource> source = new GdalSource;
+            const Status status =
+                source->open(request.path, *file, i, isChosen ? request.dimensions : std::string());
+            if (!status.ok() && isChosen) return status;
+            if (!status.ok()) continue;
+            const VoxelSource::Description d = source->describe();
             VolumeEntry entry;
             entry.name = variable.path;
             entry.text = variable.text();
             entry.size = {d.size.x, d.size.y, d.size.z};
             entry.type = d.type;
-            entry.steps = layout->steps;
+            entry.steps = source->stepCount();
             entry.chosen = isChosen;
             entries.push_back(entry);
         }

@@ -70,14 +70,25 @@ int roleBySigns(const GDALMDArray& coordinates)
     return lookUp(UNITS, unit);
 }
 
-int roleOf(const Variable& variable, const GDALDimension& dimension)
+int roleSaid(const Variable& variable, const GDALDimension& dimension)
 {
-    const std::string type = osgDB::convertToLowerCase(dimension.GetType());
-    if (const int role = lookUp(TYPES, type); role != UNKNOWN) return role;
     const Array coordinates = coordinateArray(*variable.group, dimension);
     if (coordinates)
         if (const int role = roleBySigns(*coordinates); role != UNKNOWN) return role;
     return lookUp(NAMES, osgDB::convertToLowerCase(dimension.GetName()));
+}
+
+// GDAL takes whatever has a length for upright: that says something of one dimension alone.
+int roleByType(const std::vector<Dimension>& dimensions, const GDALDimension& dimension)
+{
+    const auto typed = [](const GDALDimension& d) {
+        return lookUp(TYPES, osgDB::convertToLowerCase(d.GetType()));
+    };
+    const int role = typed(dimension);
+    if (role != Z) return role;
+    const auto upright = std::count_if(dimensions.begin(), dimensions.end(),
+                                       [&](const Dimension& d) { return typed(*d) == Z; });
+    return upright == 1 ? Z : UNKNOWN;
 }
 
 std::string namesOf(const std::vector<Dimension>& dimensions)
@@ -102,10 +113,15 @@ Roles rolesOf(const Variable& variable)
     Roles roles;
     const int count = int(dimensions.size());
     for (int i = 0; i < count; ++i) {
-        const int role = roleOf(variable, *dimensions[std::size_t(i)]);
+        const int role = roleSaid(variable, *dimensions[std::size_t(i)]);
         if (role == UNKNOWN) continue;
         int& taken = roles.of[std::size_t(role)];
         if (taken < 0 || sizeOf(i) > sizeOf(taken)) taken = i;
+    }
+    for (int i = 0; i < count; ++i) {
+        if (roles.has(i)) continue;
+        const int role = roleByType(dimensions, *dimensions[std::size_t(i)]);
+        if (role != UNKNOWN && roles.of[std::size_t(role)] < 0) roles.of[std::size_t(role)] = i;
     }
     for (int i = count - 1; i >= 0; --i) {
         if (roles.has(i) || sizeOf(i) < 2) continue;

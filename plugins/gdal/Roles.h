@@ -19,8 +19,9 @@ struct Roles
     bool has(int dimension) const;
 };
 
-/// What names, attributes and units of the dimensions say (CF conventions); of those that say
-/// nothing and have more than one sample, the last is x, then y, z and time. Expects a Session.
+/// What attributes and units of the dimensions say (CF conventions), else their names, else the
+/// type that GDAL gives them; of those that say nothing and have more than one sample, the last is
+/// x, then y, z and time. Expects a Session.
 Roles rolesOf(const Variable& variable);
 /// As said: "lon,lat,level,time", two to four names, of which some may be empty. VALUE_INVALID for
 /// a name that is not there, or there twice; the text lacks the path. Expects a Session.

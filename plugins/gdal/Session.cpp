@@ -10,6 +10,8 @@ namespace gdal {
 
 namespace {
 
+constexpr const char* SIDE_FILES = "GDAL_PAM_ENABLED";
+
 std::recursive_mutex& libraryMutex()
 {
     static std::recursive_mutex mutex;
@@ -23,12 +25,13 @@ Session::Session() : _lock(libraryMutex())
     static std::once_flag once;
     std::call_once(once, GDALAllRegister);
     CPLPushErrorHandlerEx(keep, this);
-    CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", "NO");
+    if (const char* before = CPLGetThreadLocalConfigOption(SIDE_FILES, nullptr)) _before = before;
+    CPLSetThreadLocalConfigOption(SIDE_FILES, "NO");
 }
 
 Session::~Session()
 {
-    CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", nullptr);
+    CPLSetThreadLocalConfigOption(SIDE_FILES, _before ? _before->c_str() : nullptr);
     CPLPopErrorHandler();
 }
 

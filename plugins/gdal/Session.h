@@ -3,6 +3,7 @@
 #include <cpl_error.h>
 
 #include <mutex>
+#include <optional>
 #include <string>
 
 namespace osgVolumizer {
@@ -26,6 +27,7 @@ private:
     static void CPL_STDCALL keep(CPLErr kind, CPLErrorNum number, const char* text);
 
     std::unique_lock<std::recursive_mutex> _lock;
+    std::optional<std::string> _before; ///< the thread's option for files beside
     std::string _failure;
 };
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -19,13 +20,45 @@
 namespace osgVolumizer {
 namespace vdb {
 
+/// What is known of voxels of which one sample is made: of all but those of the background's value,
+/// which may be so large that others vanish beside it.
+struct Sum
+{
+    double finite = 0.0, of = 0.0; ///< the sum of those that are finite, and how many
+    double voxels = 0.0;           ///< all
+
+    void add(double value, double times)
+    {
+        voxels += times;
+        if (!std::isfinite(value)) return;
+        finite += times * value;
+        of += times;
+    }
+    void add(const Sum& sum)
+    {
+        finite += sum.finite;
+        of += sum.of;
+        voxels += sum.voxels;
+    }
+    /// The mean of the finite ones of `all` voxels, of which those not added have the background's
+    /// value; NaN where there are none.
+    double meanWith(double background, double all) const
+    {
+        const double rest = std::isfinite(background) ? all - voxels : 0.0;
+        if (of + rest == 0.0) return std::numeric_limits<double>::quiet_NaN();
+        if (of == 0.0) return background;
+        const double mean = finite / of;
+        return rest == 0.0 ? mean : mean + (background - mean) * (rest / (of + rest));
+    }
+};
+
 /// The voxels of a grid as numbers that are an `Out` in memory each (see Samples.h). Threads read
 /// side by side: nobody changes the tree. What no node of it has takes no memory but that of the
 /// region asked for, and its range is known without reading.
 ///
 /// Where all of the volume took more than half of what paged voxels may take in memory it has
-/// coarser levels: floats are means of all that they stand for, integers, which may be labels, the
-/// voxel in the middle.
+/// coarser levels: floats are means of all finite ones that they stand for, integers, which may be
+/// labels, the voxel in the middle.
 template <class Grid, class Out>
 class TreeSource : public VoxelSource
 {
@@ -113,7 +146,7 @@ private:
     struct Summary
     {
         core::ValueRange range; ///< of values that are finite
-        double sum = 0.0;
+        Sum sum;
     };
     using Leaves = std::unordered_map<const Leaf*, Summary>;
 
@@ -132,12 +165,13 @@ private:
                 for (at.x() = box.min().x(); at.x() <= box.max().x(); ++at.x())
                     function(at);
     }
-    static Summary summaryOf(const Leaf& leaf, const openvdb::CoordBBox& part)
+    Summary summaryOf(const Leaf& leaf, const openvdb::CoordBBox& part) const
     {
+        const double background = number(_grid->background());
         Summary summary;
         forEach(part, [&](const openvdb::Coord& at) {
             const double v = number(leaf.getValue(at));
-            summary.sum += v;
+            if (v != background) summary.sum.add(v, 1.0);
             if (std::isfinite(v)) summary.range.expand({v, v});
         });
         return summary;
@@ -176,9 +210,7 @@ void TreeSource<Grid, Out>::readMeans(int level, const core::Box3i& region, Out*
     using openvdb::Coord;
     using openvdb::CoordBBox;
     const glm::ivec3 size = region.size();
-    // How much the sums of voxels differ from what background all over had.
-    std::vector<double> sums(std::size_t(size.x) * size.y * size.z);
-    const double background = number(_grid->background());
+    std::vector<Sum> sums(std::size_t(size.x) * size.y * size.z);
     const Coord origin = _show.box.min();
     const auto indexOf = [&](const Coord& at) { // of the level, in the region
         const auto along = [&](int axis) {
@@ -187,9 +219,10 @@ void TreeSource<Grid, Out>::readMeans(int level, const core::Box3i& region, Out*
         };
         return (along(2) * size.y + along(1)) * size.x + along(0);
     };
+    const double background = number(_grid->background());
     const auto addTile = [&](const Value& value, const CoordBBox& part) {
-        const double more = number(value) - background;
-        if (more == 0.0) return;
+        const double v = number(value);
+        if (v == background) return;
         // Piece by piece of what is one sample of the level.
         Coord at, end;
         const auto endOf = [&](int axis) {
@@ -203,7 +236,7 @@ void TreeSource<Grid, Out>::readMeans(int level, const core::Box3i& region, Out*
                 end.y() = endOf(1);
                 for (at.x() = part.min().x(); at.x() <= part.max().x(); at.x() = end.x() + 1) {
                     end.x() = endOf(0);
-                    sums[indexOf(at)] += more * double(CoordBBox(at, end).volume());
+                    sums[indexOf(at)].add(v, double(CoordBBox(at, end).volume()));
                 }
             }
         }
@@ -211,10 +244,11 @@ void TreeSource<Grid, Out>::readMeans(int level, const core::Box3i& region, Out*
     const auto addLeaf = [&](const Leaf& leaf, const CoordBBox& part) {
         const std::size_t first = indexOf(part.min());
         if (part == leaf.getNodeBoundingBox() && first == indexOf(part.max()))
-            sums[first] += _leaves->at(&leaf).sum - background * double(Leaf::SIZE);
+            sums[first].add(_leaves->at(&leaf).sum);
         else
             forEach(part, [&](const Coord& at) {
-                sums[indexOf(at)] += number(leaf.getValue(at)) - background;
+                const double v = number(leaf.getValue(at));
+                if (v != background) sums[indexOf(at)].add(v, 1.0);
             });
     };
     visitTree(_grid->tree(), boxOf(level, region), addLeaf, addTile);
@@ -224,12 +258,12 @@ void TreeSource<Grid, Out>::readMeans(int level, const core::Box3i& region, Out*
         return double(
             std::min<std::int64_t>(std::int64_t(1) << level, _show.description.size[axis] - from));
     };
-    const double* sum = sums.data();
+    const Sum* sum = sums.data();
     for (int z = region.min.z; z < region.max.z; ++z)
         for (int y = region.min.y; y < region.max.y; ++y)
             for (int x = region.min.x; x < region.max.x; ++x)
                 *destination++ =
-                    Out(background + *sum++ / (voxels(0, x) * voxels(1, y) * voxels(2, z)));
+                    Out((sum++)->meanWith(background, voxels(0, x) * voxels(1, y) * voxels(2, z)));
 }
 
 template <class Grid, class Out>

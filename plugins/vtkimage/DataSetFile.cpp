@@ -113,6 +113,16 @@ DataSet readAny(const std::string& path, const FileHead& head, const ArrayInfo* 
                     : readXml<vtkXMLImageDataReader>(path, array, step, errors);
 }
 
+// VTK 9.1 takes no spacing and origin of files with time steps, nor directions of parallel ones.
+void placeImage(vtkDataSet& set, const FileHead& head)
+{
+    auto* image = vtkImageData::SafeDownCast(&set);
+    if (!image || !head.xml) return;
+    image->SetSpacing(head.spacing.data());
+    image->SetOrigin(head.origin.data());
+    image->SetDirectionMatrix(head.direction.data());
+}
+
 } // namespace
 
 Result<DataSet> readDataSet(const std::string& path, const FileHead& head, const ArrayInfo* array,
@@ -125,7 +135,10 @@ Result<DataSet> readDataSet(const std::string& path, const FileHead& head, const
         if (const auto part = readDataSet(piece, one, array, step); !part.ok()) return part.status;
     vtk::ErrorKeeper errors;
     const DataSet set = readAny(path, head, array, step, errors);
-    if (errors.error().empty() && set && set->GetNumberOfPoints() > 0) return set;
+    if (errors.error().empty() && set && set->GetNumberOfPoints() > 0) {
+        placeImage(*set, head);
+        return set;
+    }
     return Status(ErrorCode::FILE_UNREADABLE,
                   path + ": " + (errors.error().empty() ? "there are no points" : errors.error()));
 }

@@ -17,9 +17,9 @@ void FileHead::add(const ArrayInfo& array)
     const auto same = [&array](const ArrayInfo& a) {
         return a.name == array.name && a.cells == array.cells;
     };
-    if (array.name.empty() || array.name == vtkDataSetAttributes::GhostArrayName() ||
-        std::any_of(arrays.begin(), arrays.end(), same))
-        return;
+    const bool mark = array.name == vtkDataSetAttributes::GhostArrayName();
+    marks = marks || mark;
+    if (array.name.empty() || mark || std::any_of(arrays.begin(), arrays.end(), same)) return;
     const auto firstCells =
         std::find_if(arrays.begin(), arrays.end(), [](const ArrayInfo& a) { return a.cells; });
     arrays.insert(array.cells ? arrays.end() : firstCells, array);

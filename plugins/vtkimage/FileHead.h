@@ -2,6 +2,7 @@
 
 #include <osgVolumizer/core/Status.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,12 @@ struct FileHead
     int steps = 1;                    ///< of time
     std::vector<ArrayInfo> arrays;    ///< those that can be chosen: points first
     std::string scalars, cellScalars; ///< the active ones' names; empty: none
+    bool marks = false;               ///< some points or cells may be hidden
+    /// Of an image in XML, whose readers lose some of them; `direction` in rows.
+    std::array<double, 3> spacing{1.0, 1.0, 1.0}, origin{0.0, 0.0, 0.0};
+    std::array<double, 9> direction{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
 
-    /// Notes an array, unless it is there or of VTK's own.
+    /// Notes an array, unless it is there; of VTK's own that there are marks.
     void add(const ArrayInfo& array);
     /// By a name of nameOf(), or "points:..." or "cells:..."; of no name the active scalars, else
     /// the first of one component, else the first. VALUE_INVALID, in words that do not name the

@@ -39,17 +39,24 @@ std::string percentOf(double part, double whole)
     return text;
 }
 
+// Of a sample when it is resampled.
+std::size_t bytesOf(const Samples& samples)
+{
+    return samples.type() == VoxelType::FLOAT64 ? sizeof(double) : sizeof(float);
+}
+
 /// An array of a data set that was read; `quiet` where it was told before what it is.
-Result<osg::ref_ptr<MemoryVoxelSource>> makeVoxels(vtkDataSet& set, const ArrayInfo& array,
+Result<osg::ref_ptr<MemoryVoxelSource>> makeVoxels(vtkDataSet& set, const FileHead& head,
+                                                   const ArrayInfo& array,
                                                    const io::VolumeRequest& request, bool quiet)
 {
     const std::string& path = request.path;
     const Result<Lattice> lattice = latticeOf(set, array.cells);
     if (!lattice.ok()) return inFile(path, lattice.status);
-    const Result<Samples> samples = Samples::of(set, array, request.channel);
+    const Result<Samples> samples = Samples::of(set, head, array, request.channel);
     if (!samples.ok()) return inFile(path, samples.status);
     if (!quiet && !samples->notice().empty()) tell(path, samples->notice());
-    const Lattice even = lattice->isEven() ? *lattice : evenLattice(*lattice);
+    const Lattice even = lattice->isEven() ? *lattice : evenLattice(*lattice, bytesOf(*samples));
     VoxelSource::Description description;
     if (Status status = io::place(description, even.steps, even.position); !status.ok())
         return inFile(path, status);
@@ -75,7 +82,7 @@ Result<osg::ref_ptr<VoxelSource>> readStep(const io::VolumeRequest& request, con
 {
     const auto set = readDataSet(request.path, head, &array, step);
     if (!set.ok()) return set.status;
-    const auto voxels = makeVoxels(**set, array, request, step > 0);
+    const auto voxels = makeVoxels(**set, head, array, request, step > 0);
     if (!voxels.ok()) return voxels.status;
     return osg::ref_ptr<VoxelSource>(voxels->get());
 }
@@ -114,7 +121,7 @@ protected:
         if (!set.ok()) return set.status;
         std::vector<VolumeEntry> entries;
         for (const ArrayInfo& array : head->arrays) {
-            const Result<VolumeEntry> entry = entryOf(**set, array, request);
+            const Result<VolumeEntry> entry = entryOf(**set, *head, array, request);
             if (!entry.ok()) return entry.status;
             entries.push_back(*entry);
             entries.back().name = head->nameOf(array);
@@ -125,17 +132,18 @@ protected:
     }
 
 private:
-    static Result<VolumeEntry> entryOf(vtkDataSet& set, const ArrayInfo& array,
-                                       const io::VolumeRequest& request)
+    static Result<VolumeEntry> entryOf(vtkDataSet& set, const FileHead& head,
+                                       const ArrayInfo& array, const io::VolumeRequest& request)
     {
         const Result<Lattice> lattice = latticeOf(set, array.cells);
         if (!lattice.ok()) return inFile(request.path, lattice.status);
         // A channel is the chosen array's.
         const bool has = request.channel && *request.channel < array.components;
         const Result<Samples> samples =
-            Samples::of(set, array, has ? request.channel : std::nullopt);
+            Samples::of(set, head, array, has ? request.channel : std::nullopt);
         if (!samples.ok()) return inFile(request.path, samples.status);
-        const glm::ivec3 size = lattice->isEven() ? lattice->size : evenLattice(*lattice).size;
+        const glm::ivec3 size =
+            lattice->isEven() ? lattice->size : evenLattice(*lattice, bytesOf(*samples)).size;
         VolumeEntry entry;
         entry.size = {size.x, size.y, size.z};
         entry.type = samples->type();

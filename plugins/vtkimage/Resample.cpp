@@ -1,6 +1,7 @@
 #include "Resample.h"
 
 #include <osgVolumizer/Error.h>
+#include <osgVolumizer/Paging.h>
 #include <osgVolumizer/core/voxels/VoxelData.h>
 #include <osgVolumizer/core/voxels/VoxelDispatch.h>
 
@@ -114,10 +115,13 @@ core::VoxelView viewOf(const MemoryVoxelSource& source)
 
 } // namespace
 
-Lattice evenLattice(const Lattice& uneven)
+Lattice evenLattice(const Lattice& uneven, std::size_t bytesPerSample)
 {
     constexpr int DENSEST = 4;
-    constexpr std::int64_t MOST = std::int64_t(1) << 31; // samples
+    constexpr std::int64_t SMALL = std::int64_t(1) << 24;
+    const std::int64_t most =
+        std::min(std::max(8 * core::sampleCount(uneven.size), SMALL),
+                 getPagingBudget().memoryBytes / 2 / std::int64_t(bytesPerSample));
     Lattice even = uneven;
     for (int axis = 0; axis < 3; ++axis) {
         const std::vector<double>& x = uneven.uneven[std::size_t(axis)];
@@ -130,7 +134,7 @@ Lattice evenLattice(const Lattice& uneven)
         even.size[axis] = static_cast<int>(std::clamp(wanted, n, DENSEST * n));
     }
     // The densest axis gives way first.
-    while (core::sampleCount(even.size) > MOST) {
+    while (core::sampleCount(even.size) > most) {
         int densest = 0;
         const auto density = [&](int axis) { return double(even.size[axis]) / uneven.size[axis]; };
         for (int axis = 1; axis < 3; ++axis)

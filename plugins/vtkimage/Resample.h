@@ -9,8 +9,9 @@ namespace vtkimage {
 
 /// The even lattice for an uneven one: along each uneven axis as many samples as its shortest
 /// spacing calls for, but no more than four times those that there are. Where that makes more than
-/// 2^31 samples in all, fewer.
-Lattice evenLattice(const Lattice& uneven);
+/// eight times the samples in all and more than 2^24, or more bytes than half of what paged voxels
+/// may take in memory (see Paging.h), fewer; never fewer than there are.
+Lattice evenLattice(const Lattice& uneven, std::size_t bytesPerSample);
 
 /// Voxels of an uneven lattice at the places of an even one, by trilinear interpolation; scalars
 /// become floating point. Holes stay holes. \param error is set to the largest difference between

@@ -79,9 +79,12 @@ const unsigned char* marksOf(vtkDataSetAttributes& data, vtkIdType count)
 
 } // namespace
 
-Result<Samples> Samples::of(vtkDataSet& set, const ArrayInfo& info, std::optional<int> channel)
+Result<Samples> Samples::of(vtkDataSet& set, const FileHead& head, const ArrayInfo& info,
+                            std::optional<int> channel)
 {
     Samples samples;
+    samples._isStep = head.steps > 1;
+    samples._marks = head.marks;
     vtkDataSetAttributes& data =
         info.cells ? static_cast<vtkDataSetAttributes&>(*set.GetCellData()) : *set.GetPointData();
     const vtkIdType count = info.cells ? set.GetNumberOfCells() : set.GetNumberOfPoints();
@@ -156,8 +159,9 @@ void Samples::scan()
 {
     double rounding = 0.0; // to single precision
     const vtkIdType count = _array->GetNumberOfTuples();
-    if (count <= std::numeric_limits<int>::max() && sameType(_array->GetDataType(), _type) &&
-        isShared() && components() == 1) {
+    const bool same = sameType(_array->GetDataType(), _type);
+    if (_isStep) _type = typeOfSteps();
+    if (count <= std::numeric_limits<int>::max() && same && isShared() && components() == 1) {
         _range =
             core::scanRange({_array->GetVoidPointer(0), _type, 1, {static_cast<int>(count), 1, 1}});
         return;
@@ -169,7 +173,17 @@ void Samples::scan()
             _range.expand({v, v});
             rounding = std::max(rounding, std::abs(v - static_cast<double>(static_cast<float>(v))));
         }
-    _type = typeFor(rounding);
+    _type = _isStep ? typeOfSteps() : typeFor(rounding);
+}
+
+VoxelType Samples::typeOfSteps() const
+{
+    if (_how == How::COLOR || _how == How::LUMINANCE) return VoxelType::UINT8;
+    VoxelType type = VoxelType::FLOAT64;
+    if (!sameType(_array->GetDataType(), type)) return VoxelType::FLOAT64;
+    if (!_marks) return type;
+    const bool wide = type == VoxelType::INT32 || type == VoxelType::UINT32;
+    return wide ? VoxelType::FLOAT64 : VoxelType::FLOAT32;
 }
 
 VoxelType Samples::typeFor(double rounding) const

@@ -24,14 +24,17 @@ class Samples
 public:
     /// \param channel of its components; without: three or four of unsigned char are a colour, RGB
     /// as luminance, three of floating point a vector, as its length, others their first.
+    /// \param head says whether it is one of several time steps, whose types have to be the same
     /// SIZE_MISMATCH, INDEX_OUT_OF_RANGE and FILE_UNREADABLE, in words that do not name the file.
-    static Result<Samples> of(vtkDataSet& set, const ArrayInfo& info, std::optional<int> channel);
+    static Result<Samples> of(vtkDataSet& set, const FileHead& head, const ArrayInfo& info,
+                              std::optional<int> channel);
 
     /// What was made of several components, to be told; empty for nothing special.
     const std::string& notice() const { return _notice; }
     int components() const { return _how == How::COLOR ? 4 : 1; }
     /// The narrowest that holds what is there; float32 for float64 that loses less than 2^-20 of
-    /// the range.
+    /// the range. Of a time step, whatever is there: that of the file, FLOAT64 for 64-bit numbers
+    /// and lengths of such, a float for integers of which some may be hidden.
     VoxelType type() const { return _type; }
     const core::ValueRange& range() const { return _range; }
     /// Voxels of `description`, whose type and components are set here; without a copy where that
@@ -50,13 +53,15 @@ private:
     void hide(vtkDataSet& set, bool cells);
     void scan();
     VoxelType typeFor(double rounding) const;
+    VoxelType typeOfSteps() const;
     double value(vtkIdType tuple, int component) const;
     bool isShared() const;
 
     vtkSmartPointer<vtkDataArray> _array;
     How _how = How::COMPONENT;
     int _component = 0;
-    std::vector<bool> _hidden; ///< empty where nothing is
+    bool _isStep = false, _marks = false; ///< of several; points or cells may be hidden
+    std::vector<bool> _hidden;            ///< empty where nothing is
     VoxelType _type = VoxelType::UINT8;
     core::ValueRange _range;
     std::string _notice;

@@ -7,6 +7,7 @@
 #include <osgVolumizer/core/Text.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -27,6 +28,14 @@ std::string attributeOf(vtkXMLDataElement& element, const char* name)
 {
     const char* value = element.GetAttribute(name);
     return value ? value : "";
+}
+
+// As many numbers as there are; left alone where there are fewer, as VTK does.
+template <std::size_t COUNT>
+void readNumbers(vtkXMLDataElement& element, const char* name, std::array<double, COUNT>& numbers)
+{
+    std::array<double, COUNT> found;
+    if (element.GetVectorAttribute(name, int(COUNT), found.data()) == int(COUNT)) numbers = found;
 }
 
 bool isNamed(vtkXMLDataElement& element, std::string_view name)
@@ -85,9 +94,10 @@ Status XmlFile::checkArray(vtkXMLDataElement& element, std::int64_t tuples,
     const std::string said = attributeOf(element, "NumberOfComponents");
     if (!said.empty() && (!core::parseInteger(said, components) || components < 1))
         return broken("array \"" + name + "\" has \"" + said + "\" components");
-    // A number of text has a digit at least.
+    // A number of text has a digit at least. What a parallel file says of an array has no format:
+    // its pieces, which were looked at, may be text.
     const bool ascii = attributeOf(element, "format") == "ascii";
-    const std::int64_t perValue = ascii ? 1 : std::max(known->bytes, 1);
+    const std::int64_t perValue = ascii || !_data ? 1 : std::max(known->bytes, 1);
     const std::int64_t most = ascii ? _bytes : known->bytes == 0 ? 8 * _most + 8 : _most;
     if (components > most || (tuples > 0 && components > most / tuples / perValue))
         return tooLarge(_bytes, std::to_string(tuples) + " times " + std::to_string(components) +
@@ -193,6 +203,9 @@ Status XmlFile::readDataSet(vtkXMLDataElement& primary, const std::string& path)
     if (!_whole.parse(attributeOf(primary, "WholeExtent")))
         return broken("its extent is \"" + attributeOf(primary, "WholeExtent") +
                       "\", no six numbers in order");
+    readNumbers(primary, "Spacing", _head.spacing);
+    readNumbers(primary, "Origin", _head.origin);
+    readNumbers(primary, "Direction", _head.direction);
     if (Status status = readPieces(primary, path); !status.ok()) return status;
     if (Status status = readExtent(primary, "WholeExtent", _whole); !status.ok()) return status;
     if (Status status = readArrays(primary, _whole); !status.ok()) return status;

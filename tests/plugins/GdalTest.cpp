@@ -13,6 +13,7 @@
 
 #include <support/GLTest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <thread>
@@ -278,8 +279,8 @@ TEST_F(Gdal, UnevenLevelsAreInterpolated)
     const auto part = samples<float>(*source, {{1, 0, 2}, {2, 2, 6}});
     for (int k = 2; k < 6; ++k)
         EXPECT_EQ(part[std::size_t(2 * (k - 2))], found[std::size_t(4 * k + 1)]);
-    expectPlace(*source, {0, 0, 0}, {0, 50, 1000});
-    expectPlace(*source, {1, 1, 7}, {1000, 40, 300});
+    expectPlace(*source, {0, 0, 0}, {0, 50, -1000}); // pressures are higher below
+    expectPlace(*source, {1, 1, 7}, {1000, 40, -300});
 }
 
 TEST_F(Gdal, DegreesBesideMetresBecomeMetres)
@@ -302,7 +303,179 @@ TEST_F(Gdal, DegreesBesideMetresBecomeMetres)
     // Nor is a pressure a thousand times as high as the land is wide.
     const auto pressure = open("depth.nc", "dataset=by_pressure");
     ASSERT_TRUE(pressure);
-    expectPlace(*pressure, {1, 2, 2}, {11, 61, 0.5});
+    expectPlace(*pressure, {1, 2, 2}, {11, 61, -0.5});
+}
+
+// GDAL takes every length for upright.
+TEST_F(Gdal, LengthsAlongXYAndZStayWhereTheyAre)
+{
+    {
+        GdalWriter file(path("metres.nc"), "netCDF");
+        const auto z = file.dimension("z", 3, {0, 5, 10}, "m");
+        const auto y = file.dimension("y", 4, {0, 20, 40, 60}, "m");
+        const auto x = file.dimension("x", 5, {0, 10, 20, 30, 40}, "m");
+        const auto sigma = file.dimension("sigma", 2, {1, 2}, "m");
+        file.array(file.root(), "v", {z, y, x}, volume<std::uint8_t>(5, 4, 3), GDT_Byte);
+        // Of what nothing is known but a length.
+        file.array(file.root(), "up", {y, x, sigma}, volume<std::uint8_t>(2, 5, 4), GDT_Byte);
+    }
+    const auto source = open("metres.nc", "dataset=v"), up = open("metres.nc", "dataset=up");
+    ASSERT_TRUE(source && up);
+    EXPECT_EQ(source->describe().size, glm::ivec3(5, 4, 3));
+    EXPECT_EQ(all<std::uint8_t>(*source), volume<std::uint8_t>(5, 4, 3));
+    expectPlace(*source, {4, 3, 2}, {40, 60, 10});
+    EXPECT_EQ(up->describe().size, glm::ivec3(5, 4, 2));
+}
+
+TEST_F(Gdal, PressuresAndDepthsAreHigherBelow)
+{
+    const auto lastOf = [this](const char* name, const char* unit, const char* positive) {
+        {
+            GdalWriter file(path("down.nc"), "netCDF");
+            const auto z = file.dimension(name, 3, {1, 2, 3}, unit, GDT_Float64, positive);
+            const auto y = file.dimension("y", 3, {0, 1, 2}), x = file.dimension("x", 3, {0, 1, 2});
+            file.array(file.root(), "v", {z, y, x}, volume<std::uint8_t>(3, 3, 3), GDT_Byte);
+        }
+        const auto source = open("down.nc");
+        return source ? io::placeOf(source->describe(), {2, 2, 2}) : glm::dvec3(0.0);
+    };
+    EXPECT_EQ(lastOf("lev", "hPa", ""), glm::dvec3(2, 2, -3));
+    EXPECT_EQ(lastOf("lev", "millibar", ""), glm::dvec3(2, 2, -3));
+    EXPECT_EQ(lastOf("lev", "hPa", "up"), glm::dvec3(2, 2, 3));
+    EXPECT_EQ(lastOf("depth", "m", ""), glm::dvec3(2, 2, -3));
+    EXPECT_EQ(lastOf("height", "m", ""), glm::dvec3(2, 2, 3));
+    EXPECT_EQ(lastOf("height", "m", "down"), glm::dvec3(2, 2, -3));
+}
+
+TEST_F(Gdal, LengthsOfSeveralUnitsBecomeMetres)
+{
+    {
+        GdalWriter file(path("km.nc"), "netCDF");
+        const auto x = file.dimension("x", 3, {0, 10, 20}, "km"),
+                   y = file.dimension("y", 3, {1, 11, 21}, "km"),
+                   z = file.dimension("z", 3, {0, 500, 1000}, "m"),
+                   level = file.dimension("level", 3, {1, 2, 3}, "1");
+        file.array(file.root(), "v", {z, y, x}, volume<std::uint8_t>(3, 3, 3), GDT_Byte);
+        const auto east = file.dimension("easting", 3, {0, 10000, 20000}, "m"),
+                   north = file.dimension("northing", 3, {0, 10000, 20000}, "m");
+        file.array(file.root(), "flat", {level, north, east}, volume<std::uint8_t>(3, 3, 3),
+                   GDT_Byte);
+    }
+    const auto source = open("km.nc", "dataset=v"), flat = open("km.nc", "dataset=flat");
+    ASSERT_TRUE(source && flat);
+    expectPlace(*source, {2, 2, 2}, {20000, 21000, 1000});
+    // A number of levels has a quarter of the width.
+    expectPlace(*flat, {0, 0, 0}, {0, 0, 2500});
+    expectPlace(*flat, {2, 2, 2}, {20000, 20000, 7500});
+}
+
+TEST_F(Gdal, LongitudesAcrossTheDateLineAndDoublesThatWereFloats)
+{
+    std::vector<double> rounded;
+    for (int i = 0; i < 3600; ++i)
+        rounded.push_back(double(static_cast<float>(0.1 * i)));
+    {
+        GdalWriter file(path("wrap.nc"), "netCDF");
+        const auto y = file.dimension("lat", 2, {50, 40}, "degrees_north"),
+                   x = file.dimension("lon", 6, {170, 175, -180, -175, -170, -165}, "degrees_east");
+        file.array(file.root(), "wrap", {y, x}, volume<std::uint8_t>(6, 2, 1), GDT_Byte);
+        const auto fine = file.dimension("longitude", 3600, rounded, "degrees_east");
+        file.array(file.root(), "even", {y, fine}, volume<std::uint8_t>(3600, 2, 1), GDT_Byte);
+    }
+    const auto wrap = open("wrap.nc", "dataset=wrap"), even = open("wrap.nc", "dataset=even");
+    ASSERT_TRUE(wrap && even);
+    EXPECT_EQ(all<std::uint8_t>(*wrap), volume<std::uint8_t>(6, 2, 1));
+    expectPlace(*wrap, {0, 0, 0}, {170, 50, 0});
+    expectPlace(*wrap, {5, 1, 0}, {195, 40, 0});
+    EXPECT_EQ(even->describe().type, VoxelType::UINT8);
+    EXPECT_EQ(even->describe().size, glm::ivec3(3600, 2, 1));
+}
+
+TEST_F(Gdal, WhatNetCdfFillsIntegersWithIsMissing)
+{
+    const std::vector<std::int16_t> filled{0, 1, -32767, 3, 4, 5, 6, -32768};
+    {
+        GdalWriter file(path("filled.nc"), "netCDF");
+        const auto x = file.dimension("x", 2), y = file.dimension("y", 2),
+                   z = file.dimension("z", 2);
+        file.array(file.root(), "plain", {z, y, x}, filled, GDT_Int16);
+        file.array(file.root(), "scaled", {z, y, x}, filled, GDT_Int16, {{"scale_factor", 0.5}});
+        file.array(file.root(), "said", {z, y, x}, filled, GDT_Int16, {{"missing_value", 1}});
+        file.array(file.root(), "never", {z, y, x}, std::vector<std::int32_t>(), GDT_Int32);
+        const auto uneven = file.dimension("height", 3, {0, 1, 3}, "m");
+        file.array(file.root(), "between", {uneven, y, x},
+                   std::vector<std::int16_t>{0, 1, 2, 3, -32767, 5, 6, 7, 8, 9, 10, 11}, GDT_Int16);
+    }
+    const auto holesOf = [this](const std::string& name, VoxelType type) {
+        const auto source = open("filled.nc", "dataset=" + name);
+        if (!source || source->describe().type != type) return -1;
+        if (type == VoxelType::FLOAT32) return holesIn(all<float>(*source));
+        const std::vector<double> values = all<double>(*source);
+        return int(std::count_if(values.begin(), values.end(), [](double v) { return v != v; }));
+    };
+    EXPECT_EQ(holesOf("plain", VoxelType::FLOAT32), 1);
+    EXPECT_EQ(holesOf("scaled", VoxelType::FLOAT32), 1);
+    EXPECT_EQ(all<float>(*open("filled.nc", "dataset=scaled"))[7], -16384.0f);
+    EXPECT_EQ(all<float>(*open("filled.nc", "dataset=said"))[2], -32767.0f);
+    EXPECT_EQ(holesOf("never", VoxelType::FLOAT64), 8);
+    EXPECT_EQ(holesOf("between", VoxelType::FLOAT32), 1);
+    const auto entries = listVolumes(path("filled.nc"));
+    ASSERT_TRUE(entries.ok()) << entries.status.text;
+    EXPECT_EQ(entries->front().name, "/plain");
+    EXPECT_EQ(entries->front().type, VoxelType::FLOAT32);
+}
+
+TEST_F(Gdal, LongIntegersAreNarrowedWhereAllStepsAreFewBytes)
+{
+    {
+        GdalWriter file(path("steps.nc"), "netCDF");
+        const auto t = file.dimension("time", 8), x = file.dimension("x", 32),
+                   y = file.dimension("y", 32), z = file.dimension("z", 32);
+        file.array(file.root(), "v", {t, z, y, x}, volume<std::int64_t>(32, 32, 32, 8), GDT_Int64);
+    }
+    const auto typeOf = [this] {
+        const auto source = open("steps.nc");
+        const auto entries = listVolumes(path("steps.nc"));
+        EXPECT_TRUE(source && entries.ok());
+        if (!source || !entries.ok()) return VoxelType::HALF;
+        EXPECT_EQ(entries->front().type, source->describe().type);
+        return source->describe().type;
+    };
+    EXPECT_EQ(typeOf(), VoxelType::UINT8);
+    const PagingBudget before = getPagingBudget();
+    PagingBudget small = before;
+    small.memoryBytes = 1 << 20; // four steps of doubles
+    ASSERT_TRUE(setPagingBudget(small));
+    const VoxelType found = typeOf();
+    ASSERT_TRUE(setPagingBudget(before));
+    EXPECT_EQ(found, VoxelType::FLOAT64);
+}
+
+TEST_F(Gdal, WithoutAVolumeItSaysSo)
+{
+    {
+        GdalWriter file(path("line.nc"), "netCDF", "FORMAT=NC");
+        const auto x = file.dimension("x", 4);
+        file.array(file.root(), "v", {x}, volume<std::int16_t>(4, 1, 1), GDT_Int16);
+    }
+    const auto line = read("line.nc");
+    EXPECT_EQ(line.status.code, ErrorCode::FILE_UNREADABLE);
+    EXPECT_EQ(line.status.text,
+              path("line.nc") + " has no volume: no variable of numbers with two axes");
+}
+
+TEST_F(Gdal, OptionsOfTheThreadStayWhatTheyWere)
+{
+    {
+        GdalWriter file(path("option.nc"), "netCDF");
+        const auto x = file.dimension("x", 2), y = file.dimension("y", 2);
+        file.array(file.root(), "v", {y, x}, volume<std::uint8_t>(2, 2, 1), GDT_Byte);
+    }
+    CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", "mine");
+    EXPECT_TRUE(open("option.nc"));
+    const char* const after = CPLGetThreadLocalConfigOption("GDAL_PAM_ENABLED", nullptr);
+    EXPECT_STREQ(after, "mine");
+    CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", nullptr);
 }
 
 TEST_F(Gdal, GroupsAndUniqueLastParts)

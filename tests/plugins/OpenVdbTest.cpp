@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 namespace OpenVdbTest {
@@ -418,6 +419,48 @@ TEST_F(OpenVdb, CoarseLevelsAreMeansOfFloatsAndMiddlesOfIntegers)
               ErrorCode::INDEX_OUT_OF_RANGE);
     EXPECT_EQ(a->read({glm::ivec3(0), glm::ivec3(101, 1, 1)}, &byte).code,
               ErrorCode::INDEX_OUT_OF_RANGE);
+}
+
+// Beside a background that is large, or no number, and with voxels that are none.
+TEST_F(OpenVdb, CoarseLevelsAreMeansOfWhatIsFinite)
+{
+    const float backgrounds[] = {std::numeric_limits<float>::max(), std::nanf(""), 1e30f, INFINITY};
+    for (const float background : backgrounds) {
+        auto grid = openvdb::FloatGrid::create(background);
+        auto to = grid->getAccessor();
+        for (const Coord& at : openvdb::CoordBBox({0, 0, 0}, {76, 63, 63}))
+            to.setValue(at, value(at));
+        for (const Coord& at : openvdb::CoordBBox({10, 10, 10}, {12, 11, 11}))
+            to.setValue(at, std::nanf(""));
+        to.setValue({99, 63, 63}, 7.0f);
+        write("means.vdb", {grid}, "g");
+        const PagingBudget before = getPagingBudget();
+        PagingBudget small = before;
+        small.memoryBytes = 1 << 20;
+        ASSERT_TRUE(setPagingBudget(small));
+        const auto source = open("means.vdb");
+        ASSERT_TRUE(setPagingBudget(before));
+        ASSERT_TRUE(source);
+        ASSERT_EQ(source->levelCount(), 2);
+        const auto found = samples<float>(*source, {glm::ivec3(0), {50, 32, 32}}, 1);
+        const auto tree = grid->getConstAccessor();
+        int wrong = 0;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const Coord first(2 * int(i % 50), 2 * int(i / 50 % 32), 2 * int(i / 1600));
+            double sum = 0.0, count = 0.0;
+            for (const Coord& at : openvdb::CoordBBox(first, first.offsetBy(1)))
+                if (const double v = tree.getValue(at); std::isfinite(v)) {
+                    sum += v;
+                    count += 1.0;
+                }
+            wrong += count == 0.0 ? !std::isnan(found[i])
+                                  : !(std::fabs(found[i] - sum / count) <= 1e-6 * sum / count);
+        }
+        EXPECT_EQ(wrong, 0) << background;
+        EXPECT_EQ(std::isnan(found[(5 * 32 + 5) * 50 + 5]), true); // all eight
+        EXPECT_EQ(std::isnan(found[(5 * 32 + 5) * 50 + 6]), false);
+        EXPECT_EQ(std::isfinite(found[45]), std::isfinite(background));
+    }
 }
 
 TEST_F(OpenVdb, WhatIsNoVolumeSaysSo)

@@ -375,6 +375,28 @@ TEST_F(VtkImage, PiecesOfAParallelFile)
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
+// Numbers of a digit, of which doubles made eight bytes.
+TEST_F(VtkImage, ParallelFilesOfTextAndWhereTheyLie)
+{
+    const auto set = image(20, 20, 20);
+    std::vector<double> values;
+    for (int i = 0; i < 8000; ++i)
+        values.push_back(i % 10);
+    addArray<vtkDoubleArray>(set->GetPointData(), "a", 1, values);
+    writeImage("text.vti", set, vtkXMLWriter::Ascii);
+    const Source source = open(writeBytes(
+        "all.pvti",
+        "<?xml version=\"1.0\"?><VTKFile type=\"PImageData\" version=\"0.1\"><PImageData "
+        "WholeExtent=\"0 19 0 19 0 19\" GhostLevel=\"0\" Origin=\"1 2 3\" Spacing=\"1 2 4\" "
+        "Direction=\"0 -1 0 1 0 0 0 0 -1\"><PPointData Scalars=\"a\">"
+        "<PDataArray type=\"Float64\" Name=\"a\"/></PPointData>"
+        "<Piece Extent=\"0 19 0 19 0 19\" Source=\"text.vti\"/></PImageData></VTKFile>"));
+    ASSERT_TRUE(source);
+    EXPECT_EQ(valuesOf(source), values);
+    expectPlace(*source, {0, 0, 0}, {1, 2, 3});
+    expectPlace(*source, {10, 5, 2}, {-9, 12, -5});
+}
+
 TEST_F(VtkImage, FilesUnderTheirOwnNamesAreVolumes)
 {
     const auto set = image(4, 4, 4);

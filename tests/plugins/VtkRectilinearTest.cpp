@@ -4,6 +4,7 @@
 
 #include "VtkFiles.h"
 
+#include <osgVolumizer/Paging.h>
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/io/Placement.h>
 
@@ -221,6 +222,54 @@ TEST_F(VtkRectilinear, NoMoreThanFourTimesTheSamples)
     EXPECT_EQ(entries->front().size, osg::Vec3i(16, 2, 2));
     EXPECT_EQ(entries->front().type, VoxelType::FLOAT32);
     EXPECT_EQ(entries->front().text, "points, from 0 to 200, resampled from 4,2,2");
+}
+
+// Four times along each axis were 64 times in all.
+TEST_F(VtkRectilinear, NoMoreSamplesThanMemoryHas)
+{
+    Axis stretched;
+    for (int i = 0; i < 20; ++i)
+        stretched.push_back(std::pow(1.5, i));
+    const Axis axes[3] = {stretched, stretched, stretched};
+    const auto set = grid(axes);
+    addArray<vtkFloatArray>(set->GetPointData(), "a", 1,
+                            sampled(axes, [](double x, double, double) { return x; }));
+    const std::string file = writeGrid("a.vtr", set);
+    const auto sizeOf = [&] {
+        const auto entries = listVolumes(file);
+        return entries.ok() ? entries->front().size : osg::Vec3i();
+    };
+    EXPECT_EQ(sizeOf(), osg::Vec3i(80, 80, 80));
+    const PagingBudget before = getPagingBudget();
+    PagingBudget small = before;
+    small.memoryBytes = 1 << 20;
+    ASSERT_TRUE(setPagingBudget(small));
+    const osg::Vec3i listed = sizeOf();
+    const Source source = open(file);
+    ASSERT_TRUE(setPagingBudget(before));
+    ASSERT_TRUE(source);
+    const glm::ivec3 size = source->describe().size;
+    EXPECT_EQ(listed, osg::Vec3i(size.x, size.y, size.z));
+    EXPECT_LE(source->describe().sizeInBytes(), 1 << 19);
+    EXPECT_GT(source->describe().sizeInBytes(), 1 << 18); // as many as there may be
+    EXPECT_NE(told().find("wrong by at most"), std::string::npos);
+    EXPECT_FLOAT_EQ(float(valuesOf(source).back()), float(stretched.back()));
+}
+
+TEST_F(VtkRectilinear, NoMoreThanEightTimesTheSamplesOfLargeOnes)
+{
+    Axis stretched;
+    for (int i = 0; i < 70; ++i)
+        stretched.push_back(std::pow(1.2, i));
+    const Axis axes[3] = {stretched, stretched, stretched};
+    const auto set = grid(axes);
+    addArray<vtkFloatArray>(set->GetPointData(), "a", 1, Axis(70 * 70 * 70, 1.0));
+    const auto entries =
+        listVolumes(write<vtkXMLRectilinearGridWriter>("a.vtr", set.Get(), vtkXMLWriter::Appended));
+    ASSERT_TRUE(entries.ok()) << entries.status.text;
+    const osg::Vec3i size = entries->front().size; // 280^3 without a bound
+    EXPECT_LE(double(size.x()) * size.y() * size.z(), double(1 << 24));
+    EXPECT_GT(double(size.x()) * size.y() * size.z(), double(1 << 23));
 }
 
 TEST_F(VtkRectilinear, HolesStayWhereTheyAre)

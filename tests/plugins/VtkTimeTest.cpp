@@ -5,6 +5,7 @@
 #include "VtkFiles.h"
 
 #include <osgVolumizer/VolumeAppearance.h>
+#include <osgVolumizer/io/Placement.h>
 
 #include <osgDB/ReadFile>
 
@@ -14,6 +15,7 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <atomic>
+#include <cmath>
 #include <thread>
 
 namespace VtkTimeTest {
@@ -22,7 +24,27 @@ using namespace osgVolumizer;
 
 namespace {
 
-using VtkTime = VtkFolderTest;
+class VtkTime : public VtkFolderTest
+{
+protected:
+    /// An image of 2 x 2 x 2 points of two time steps, with arrays of XML.
+    std::string twoSteps(const std::string& name, const std::string& arrays,
+                         const std::string& more = {}) const
+    {
+        return writeBytes(name,
+                          "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\" version=\"1.0\">"
+                          "<ImageData WholeExtent=\"3 4 0 1 0 1\" TimeValues=\"0 1\" " +
+                              more + "><Piece Extent=\"3 4 0 1 0 1\"><PointData>" + arrays +
+                              "</PointData></Piece></ImageData></VTKFile>");
+    }
+    static std::string array(const std::string& type, int step, const std::string& numbers,
+                             const std::string& name = "a", int components = 1)
+    {
+        return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+               std::to_string(components) + "\" format=\"ascii\" TimeStep=\"" +
+               std::to_string(step) + "\">" + numbers + "</DataArray>";
+    }
+};
 
 } // namespace
 
@@ -48,6 +70,55 @@ TEST_F(VtkTime, StepsOfAnImage)
     for (const int step : {2, 0, 1})
         EXPECT_EQ(valuesOf(*source, step), std::vector<double>(12, 100.0 * step)) << step;
     EXPECT_EQ(listVolumes(path("a.vti"))->front().steps, 3);
+}
+
+TEST_F(VtkTime, ImagesOfStepsLieWhereTheFileSays)
+{
+    const Source source = open(twoSteps(
+        "a.vti", array("Float32", 0, "0 1 2 3 4 5 6 7") + array("Float32", 1, "7 6 5 4 3 2 1 0"),
+        "Origin=\"1 2 3\" Spacing=\"2 4 8\" Direction=\"0 -1 0 1 0 0 0 0 -1\""));
+    ASSERT_TRUE(source);
+    EXPECT_EQ(valuesOf(*source, 1), (std::vector<double>{7, 6, 5, 4, 3, 2, 1, 0}));
+    // Index 3 of x is the first: 1 - 4 y, 2 + 2 x, 3 - 8 z.
+    const auto expectAt = [&](const glm::dvec3& voxel, const glm::dvec3& expected) {
+        const glm::dvec3 place = io::placeOf(source->describe(), voxel);
+        for (int axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(place[axis], expected[axis], 1e-9);
+    };
+    expectAt({0, 0, 0}, {1, 8, 3});
+    expectAt({1, 1, 1}, {-3, 10, -5});
+}
+
+// The narrowest type that holds a step does not hold another.
+TEST_F(VtkTime, StepsHaveOneType)
+{
+    const std::string small = "0 1 2 3 4 5 6 7", large = "0 1 2 3 4 5 6 70000",
+                      fine = "0 1 2 3 4 5 6 1000000.1";
+    const auto expect = [this](const std::string& arrays, VoxelType type, double last) {
+        const std::string file = twoSteps("a.vti", arrays);
+        const Source source = open(file);
+        if (!source) return;
+        EXPECT_EQ(source->describe().type, type);
+        EXPECT_EQ(valuesOf(*source, 0).back(), 7.0);
+        EXPECT_EQ(valuesOf(*source, 1).back(), last);
+        EXPECT_EQ(listVolumes(file, new osgDB::Options("dataset=a"))->front().type, type);
+    };
+    expect(array("Int64", 0, small) + array("Int64", 1, large), VoxelType::FLOAT64, 70000.0);
+    expect(array("Float64", 0, small) + array("Float64", 1, fine), VoxelType::FLOAT64, 1000000.1);
+    expect(array("Int16", 0, small) + array("Int16", 1, "0 0 0 0 0 0 0 9"), VoxelType::INT16, 9.0);
+    // Hidden points in one of them alone.
+    const std::string file =
+        twoSteps("b.vti", array("UInt8", 0, small) + array("UInt8", 1, small) +
+                              array("UInt8", 0, "0 0 0 0 0 0 0 0", "vtkGhostType") +
+                              array("UInt8", 1, "0 2 0 0 0 0 0 0", "vtkGhostType"));
+    const Source source = open(file);
+    ASSERT_TRUE(source);
+    EXPECT_EQ(source->describe().type, VoxelType::FLOAT32);
+    EXPECT_EQ(valuesOf(*source, 0)[1], 1.0);
+    const std::vector<double> hidden = valuesOf(*source, 1);
+    EXPECT_TRUE(std::isnan(hidden[1]));
+    EXPECT_EQ(hidden[7], 7.0);
+    EXPECT_EQ(listVolumes(file)->front().type, VoxelType::FLOAT32);
 }
 
 TEST_F(VtkTime, NumberedFilesAreASeries)
