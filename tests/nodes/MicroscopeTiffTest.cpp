@@ -267,28 +267,42 @@ TEST_F(MicroscopeTiff, SixteenBitsOfImageJMayBeSigned)
 
 TEST_F(MicroscopeTiff, FilesLargerThanTheirShareOfMemoryAreReadAsTheyAreAskedFor)
 {
-    // 800 000 bytes.
-    constexpr int SLICES = 5000;
-    const std::string file = write("a.tif", SLICES, "ImageJ=1.11a\nimages=5000\nslices=5000\n");
+    constexpr int EDGE = 256, SLICES = 9; // more than a megabyte
+    const auto valueAt = [](int x, int y, int z) {
+        return static_cast<std::uint16_t>(x + 257 * y + 7000 * z);
+    };
+    OIIO::ImageSpec spec(EDGE, EDGE, 1, OIIO::TypeDesc::UINT16);
+    const auto out = OIIO::ImageOutput::create(path("a.tif"));
+    for (int z = 0; z < SLICES; ++z) {
+        std::vector<std::uint16_t> pixels;
+        for (int i = 0; i < EDGE * EDGE; ++i)
+            pixels.push_back(valueAt(i % EDGE, i / EDGE, z));
+        ASSERT_TRUE(out->open(path("a.tif"), spec,
+                              z ? OIIO::ImageOutput::AppendSubimage : OIIO::ImageOutput::Create));
+        ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT16, pixels.data()));
+    }
+    out->close();
     const PagingBudget before = getPagingBudget();
     PagingBudget small = before;
     small.memoryBytes = 1 << 20;
     ASSERT_TRUE(setPagingBudget(small).ok());
-    const osg::ref_ptr<Voxels> voxels = read(file);
+    const osg::ref_ptr<Voxels> voxels = read(path("a.tif"));
     ASSERT_TRUE(setPagingBudget(before).ok());
     ASSERT_TRUE(voxels->isPaged());
     const VoxelSource& source = *voxels->getSource();
-    for (int z : {0, 7, 599}) {
-        std::vector<std::uint16_t> part(4 * 3);
-        ASSERT_TRUE(source.read({{2, 4, z}, {6, 7, z + 1}}, part.data()).ok());
-        EXPECT_EQ(std::vector<std::uint16_t>(12, static_cast<std::uint16_t>(100 * z)), part);
+    for (int z : {0, 7, SLICES - 1}) {
+        std::vector<std::uint16_t> part(4 * 150);
+        ASSERT_TRUE(source.read({{200, 100, z}, {204, 250, z + 1}}, part.data()).ok());
+        for (int i = 0; i < 600; ++i)
+            ASSERT_EQ(valueAt(200 + i % 4, 100 + i / 4, z), part[std::size_t(i)]) << i;
     }
     // Of what a sample of a level stands for, the one in the middle; as readThinned() has it.
-    std::vector<std::uint16_t> level(5 * 4 * 300), expected(level);
-    ASSERT_TRUE(source.readLevel(1, {{0, 0, 0}, {5, 4, 300}}, level.data()).ok());
-    ASSERT_TRUE(source.readThinned(1, {{0, 0, 0}, {5, 4, 300}}, expected.data()).ok());
+    const core::Box3i all{{0, 0, 0}, {128, 128, 5}};
+    std::vector<std::uint16_t> level(128 * 128 * 5), expected(level);
+    ASSERT_TRUE(source.readLevel(1, all, level.data()).ok());
+    ASSERT_TRUE(source.readThinned(1, all, expected.data()).ok());
     EXPECT_EQ(expected, level);
-    EXPECT_EQ(59900, level.back());
+    EXPECT_EQ(valueAt(255, 255, 8), level.back());
     EXPECT_FALSE(source.read({{0, 0, SLICES - 1}, {1, 1, SLICES + 1}}, level.data()).ok());
 }
 
