@@ -21,6 +21,8 @@ HEADLESS_DEMO_PACKAGES="xvfb imagemagick"
 CHART_PACKAGES="libgtest-dev libgl1-mesa-dri openscenegraph xvfb xauth python3"
 # Readers of .vtk and .vtu files, and two of the chart's peers; all goes without it.
 VTK_PACKAGES="libvtk9-dev"
+# The reader of TIFF with depth, and of other rare ones; all goes without it.
+TIFF_PACKAGES="libtiff-dev"
 # The reader of HDF5 files; all goes without it.
 HDF5_PACKAGES="libhdf5-dev"
 # The reader of DICOM, NIfTI, NRRD, ..., with GDCM among what it depends on; all goes without it.

@@ -71,6 +71,7 @@ run_fuzz() {
 }
 
 install_missing $BUILD_PACKAGES $TEST_PACKAGES || exit 1
+install_missing $TIFF_PACKAGES || echo "No libtiff: the reader of rarer TIFF is left out." >&2
 install_missing $HDF5_PACKAGES || echo "No HDF5: the reader of its files is left out." >&2
 install_missing $ITK_PACKAGES || echo "No ITK: the reader of DICOM and its like is left out." >&2
 install_missing $ITK_TEST_PACKAGES || exit 1

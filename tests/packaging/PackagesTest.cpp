@@ -58,9 +58,10 @@ TEST(Packages, AreNamedInNoScriptItself)
 
 TEST(Packages, OfEveryScriptAreListed)
 {
-    for (const char* list : {"TEST_PACKAGES", "DEMO_PACKAGES", "HEADLESS_DEMO_PACKAGES",
-                             "CHART_PACKAGES", "VTK_PACKAGES", "HDF5_PACKAGES", "GDAL_PACKAGES",
-                             "OPENVDB_PACKAGES", "ITK_PACKAGES", "ITK_TEST_PACKAGES"}) {
+    for (const char* list :
+         {"TEST_PACKAGES", "DEMO_PACKAGES", "HEADLESS_DEMO_PACKAGES", "CHART_PACKAGES",
+          "VTK_PACKAGES", "HDF5_PACKAGES", "TIFF_PACKAGES", "GDAL_PACKAGES", "OPENVDB_PACKAGES",
+          "ITK_PACKAGES", "ITK_TEST_PACKAGES"}) {
         EXPECT_FALSE(packages(list).empty()) << list;
     }
 }
