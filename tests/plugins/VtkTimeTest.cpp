@@ -101,7 +101,8 @@ TEST_F(VtkTime, StepsHaveOneType)
         EXPECT_EQ(source->describe().type, type);
         EXPECT_EQ(valuesOf(*source, 0).back(), 7.0);
         EXPECT_EQ(valuesOf(*source, 1).back(), last);
-        EXPECT_EQ(listVolumes(file, new osgDB::Options("dataset=a"))->front().type, type);
+        const osg::ref_ptr<osgDB::Options> a = new osgDB::Options("dataset=a");
+        EXPECT_EQ(listVolumes(file, a.get())->front().type, type);
     };
     expect(array("Int64", 0, small) + array("Int64", 1, large), VoxelType::FLOAT64, 70000.0);
     expect(array("Float64", 0, small) + array("Float64", 1, fine), VoxelType::FLOAT64, 1000000.1);
