@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12, root or sudo), builds, and runs all tests: optimised, then
 # under the address and undefined-behaviour sanitizers; then the fuzz targets, FUZZ_SECONDS each.
-# Takes about 45 minutes on two cores, and 3 GB in build/. On a bare Debian 12 it downloads 645 MB of
+# Takes about an hour on two cores, and 3 GB in build/. On a bare Debian 12 it downloads 645 MB of
 # packages, 425 MB where VTK cannot be had. The last line says what happened.
 # TSAN=1 adds the test of threads under the thread sanitizer. Fails if anything fails, or if a test
 # was skipped.
