@@ -47,10 +47,11 @@ Result<io::Source> readFile(const std::string& path, const io::VoxelOptions& sai
     const io::FileKind kind = io::fileKindOf(path);
     if (const auto formats = io::pluginFormatsOf(kind); !formats.empty())
         return io::readByPlugin(formats, requestOf(path, said));
-    const bool image = kind == io::FileKind::IMAGE && !io::PyramidSource::isPyramid(path);
-    if (Status status = refuseChoice(path, said, image); !status.ok()) return status;
+    const bool image = kind == io::FileKind::IMAGE,
+               pyramid = image && io::PyramidSource::isPyramid(path);
+    if (Status status = refuseChoice(path, said, image && !pyramid); !status.ok()) return status;
     if (kind == io::FileKind::NUMPY) return io::readNumpy(path, progress);
-    if (io::PyramidSource::isPyramid(path)) return io::readPyramid(path);
+    if (pyramid) return io::readPyramid(path);
     return io::readImage(path, said.channel, progress);
 }
 

@@ -6,6 +6,7 @@
 #include <osgVolumizer/Paging.h>
 #include <osgVolumizer/core/voxels/BrickTree.h>
 #include <osgVolumizer/core/voxels/VoxelData.h>
+#include <osgVolumizer/io/NarrowestType.h>
 
 #include <osg/Notify>
 
@@ -25,18 +26,6 @@ bool areLongs(const GDALMDArray& array)
 {
     return typeOf(array) == VoxelType::FLOAT64 &&
            array.GetDataType().GetNumericDataType() != GDT_Float64;
-}
-
-// The narrowest integer type for a range of whole numbers.
-VoxelType narrowest(double low, double high)
-{
-    for (const VoxelType type : {VoxelType::UINT8, VoxelType::UINT16, VoxelType::INT16,
-                                 VoxelType::UINT32, VoxelType::INT32}) {
-        double least = 0.0, most = 0.0;
-        voxelTypeRange(type, least, most);
-        if (low >= least && high <= most) return type;
-    }
-    return VoxelType::FLOAT64;
 }
 
 } // namespace
@@ -102,7 +91,12 @@ void GdalSource::settleType(std::int64_t mostBytes)
         filled = filling && std::find(slice.begin(), slice.end(), *filling) != slice.end();
         return !filled;
     });
-    if (longs && all) _layout.numbers = _layout.description.type = narrowest(low, high);
+    if (longs && all) {
+        const VoxelType least = io::narrowestInteger({low, high}, VoxelType::FLOAT64);
+        // GDAL has no numbers of 8 bits with a sign.
+        _layout.numbers = least == VoxelType::INT8 ? VoxelType::INT16 : least;
+        _layout.description.type = _layout.numbers;
+    }
     if (!filled) return;
     _layout.calibration.missing = {*filling};
     _layout.description.type = valueType(_layout.numbers, _layout.calibration, false);

@@ -7,6 +7,7 @@
 #include <osgVolumizer/core/Text.h>
 #include <osgVolumizer/core/voxels/VoxelData.h>
 #include <osgVolumizer/io/FileKind.h>
+#include <osgVolumizer/io/NarrowestType.h>
 #include <osgVolumizer/io/Placement.h>
 
 #include <gdcmTrace.h>
@@ -67,18 +68,6 @@ bool claimOf(const DicomFile& file, const DicomFrame& frame, core::ValueRange& r
     return frame.slope == std::round(frame.slope) && frame.intercept == std::round(frame.intercept);
 }
 
-/// The narrowest integer type for a range; float32 where there is none.
-VoxelType integerFor(const core::ValueRange& range)
-{
-    for (const VoxelType type : {VoxelType::UINT8, VoxelType::INT8, VoxelType::UINT16,
-                                 VoxelType::INT16, VoxelType::UINT32, VoxelType::INT32}) {
-        double low = 0.0, high = 0.0;
-        voxelTypeRange(type, low, high);
-        if (range.low >= low && range.high <= high) return type;
-    }
-    return VoxelType::FLOAT32;
-}
-
 VoxelType typeOf(const Chosen& chosen)
 {
     core::ValueRange range;
@@ -86,7 +75,7 @@ VoxelType typeOf(const Chosen& chosen)
     for (const auto& step : chosen.grid.steps)
         for (const DicomFrame& frame : step)
             whole = claimOf(chosen.fileOf(frame), frame, range) && whole;
-    return whole ? integerFor(range) : VoxelType::FLOAT32;
+    return whole ? io::narrowestInteger(range, VoxelType::FLOAT32) : VoxelType::FLOAT32;
 }
 
 Result<VoxelSource::Description> describe(const Chosen& chosen)
@@ -360,7 +349,7 @@ Result<int> channelOf(const io::VolumeRequest& request, const DicomFile& file)
 VoxelType narrowed(VoxelType type, const core::ValueRange& range)
 {
     if (type != VoxelType::INT32 && type != VoxelType::UINT32) return type;
-    const VoxelType least = integerFor(range);
+    const VoxelType least = io::narrowestInteger(range, VoxelType::FLOAT32);
     if (voxelTypeSize(least) > 2) return least;
     return range.low < 0.0 || least == VoxelType::INT8 ? VoxelType::INT16 : VoxelType::UINT16;
 }

@@ -3,6 +3,7 @@
 #include <osgVolumizer/VoxelSeries.h>
 #include <osgVolumizer/core/voxels/VoxelData.h>
 #include <osgVolumizer/io/Brightness.h>
+#include <osgVolumizer/io/NarrowestType.h>
 #include <osgVolumizer/io/Placement.h>
 
 #include <osg/Notify>
@@ -120,24 +121,14 @@ core::ValueRange rangeOf(const Samples& samples, const Plan& plan)
     return range;
 }
 
-VoxelType narrowest(const core::ValueRange& range, VoxelType otherwise)
-{
-    for (const VoxelType type : {VoxelType::UINT8, VoxelType::INT8, VoxelType::UINT16,
-                                 VoxelType::INT16, VoxelType::UINT32, VoxelType::INT32}) {
-        double low = 0.0, high = 0.0;
-        voxelTypeRange(type, low, high);
-        if (range.low >= low && range.high <= high) return type;
-    }
-    return otherwise;
-}
-
 VoxelType typeFor(const Samples& s, const Plan& plan)
 {
     const bool scaled = s.slope != 1.0 || s.intercept != 0.0;
     const bool whole = s.slope == std::round(s.slope) && s.intercept == std::round(s.intercept);
     if (!isInteger(s.number)) return nativeType(s.number);
     if (scaled && !whole) return VoxelType::FLOAT32;
-    if (scaled || numberSize(s.number) == 8) return narrowest(rangeOf(s, plan), VoxelType::FLOAT64);
+    if (scaled || numberSize(s.number) == 8)
+        return io::narrowestInteger(rangeOf(s, plan), VoxelType::FLOAT64);
     return nativeType(s.number);
 }
 

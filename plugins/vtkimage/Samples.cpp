@@ -1,6 +1,7 @@
 #include "Samples.h"
 
 #include <osgVolumizer/io/Brightness.h>
+#include <osgVolumizer/io/NarrowestType.h>
 
 #include <vtkCellData.h>
 #include <vtkDataSet.h>
@@ -53,18 +54,6 @@ bool isFloating(const vtkDataArray& array)
 {
     const int type = const_cast<vtkDataArray&>(array).GetDataType();
     return type == VTK_FLOAT || type == VTK_DOUBLE;
-}
-
-// The narrowest of whole numbers.
-VoxelType wholeType(const core::ValueRange& range)
-{
-    for (const VoxelType type : {VoxelType::UINT8, VoxelType::INT8, VoxelType::UINT16,
-                                 VoxelType::INT16, VoxelType::UINT32, VoxelType::INT32}) {
-        double low = 0.0, high = 0.0;
-        voxelTypeRange(type, low, high);
-        if (range.empty() || (range.low >= low && range.high <= high)) return type;
-    }
-    return VoxelType::FLOAT64;
 }
 
 // Marks of points or cells, a number each; null where there are none.
@@ -197,7 +186,7 @@ VoxelType Samples::typeFor(double rounding) const
     const bool same = sameType(_array->GetDataType(), type);
     if (isFloating(*_array)) return same && _how == How::COMPONENT ? type : floating;
     if (!_hidden.empty()) return rounding > 0.0 ? VoxelType::FLOAT64 : VoxelType::FLOAT32;
-    return same ? type : wholeType(_range);
+    return same ? type : io::narrowestInteger(_range, VoxelType::FLOAT64);
 }
 
 double Samples::value(vtkIdType tuple, int component) const
