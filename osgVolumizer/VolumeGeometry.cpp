@@ -11,6 +11,7 @@
 #include <osgUtil/CullVisitor>
 #include <osgUtil/IntersectionVisitor>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -23,7 +24,17 @@ struct VolumeGeometry::Private
 {
     mutable std::mutex mutex;
     TetraSetPtr tetraSet = std::make_shared<const core::TetraSet>();
-    std::atomic<unsigned> modifiedCount{0};
+    ScalarsPtr scalars;
+    ScalarBinding binding = PER_VERTEX;
+    osg::Vec2d range{0.0, 1.0};
+    bool automaticRange = true;
+    std::atomic<unsigned> modifiedCount{0}, scalarCount{0};
+
+    bool fits(const std::vector<float>& values, ScalarBinding bound) const
+    {
+        return values.size() ==
+               (bound == PER_VERTEX ? tetraSet->vertices.size() : tetraSet->tetraCount());
+    }
     std::atomic<double> slackAngle{0.0};
     std::atomic<double> shownTime{0.0}; ///< simulation time of the last cull
 };
@@ -93,6 +104,20 @@ core::TetraSet twentyFourTetrahedra(const core::Box3d& box)
     return tetraSetOf(points, std::move(indices));
 }
 
+// Of the finite values; never empty, as far as floats can tell.
+osg::Vec2d rangeOf(const std::vector<float>& values)
+{
+    float low = INFINITY, high = -INFINITY;
+    for (const float value : values) {
+        if (!std::isfinite(value)) continue;
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    if (low > high) return {0.0, 1.0};
+    const double least = 1e-6 * std::max({std::abs(double(low)), std::abs(double(high)), 1e-30});
+    return {low, std::max(double(high), low + least)};
+}
+
 } // namespace
 
 VolumeGeometry::VolumeGeometry() : _private(new Private)
@@ -107,6 +132,11 @@ VolumeGeometry::VolumeGeometry(const VolumeGeometry& o, const osg::CopyOp& op)
 {
     _private->tetraSet = o.getTetraSet();
     _private->slackAngle = o.getSlackAngle();
+    std::lock_guard<std::mutex> lock(o._private->mutex);
+    _private->scalars = o._private->scalars;
+    _private->binding = o._private->binding;
+    _private->range = o._private->range;
+    _private->automaticRange = o._private->automaticRange;
 }
 
 VolumeGeometry::~VolumeGeometry() = default;
@@ -150,6 +180,10 @@ ReportedStatus VolumeGeometry::setTetraSet(core::TetraSet tetraSet)
     {
         std::lock_guard<std::mutex> lock(_private->mutex);
         _private->tetraSet = std::move(shared);
+        if (_private->scalars && !_private->fits(*_private->scalars, _private->binding)) {
+            _private->scalars = nullptr;
+            ++_private->scalarCount;
+        }
     }
     ++_private->modifiedCount;
     dirtyBound();
@@ -165,6 +199,74 @@ VolumeGeometry::TetraSetPtr VolumeGeometry::getTetraSet() const
 unsigned VolumeGeometry::getModifiedCount() const
 {
     return _private->modifiedCount;
+}
+
+ReportedStatus VolumeGeometry::setScalars(std::vector<float> scalars, ScalarBinding binding)
+{
+    std::lock_guard<std::mutex> lock(_private->mutex);
+    if (!_private->fits(scalars, binding))
+        return reported(
+            {ErrorCode::SIZE_MISMATCH,
+             "VolumeGeometry \"" + getName() + "\": " + std::to_string(scalars.size()) +
+                 " scalars for " +
+                 (binding == PER_VERTEX
+                      ? std::to_string(_private->tetraSet->vertices.size()) + " vertices"
+                      : std::to_string(_private->tetraSet->tetraCount()) + " tetrahedra")});
+    if (_private->automaticRange) _private->range = rangeOf(scalars);
+    _private->scalars = std::make_shared<const std::vector<float>>(std::move(scalars));
+    _private->binding = binding;
+    ++_private->scalarCount;
+    return {};
+}
+
+void VolumeGeometry::removeScalars()
+{
+    std::lock_guard<std::mutex> lock(_private->mutex);
+    _private->scalars = nullptr;
+    ++_private->scalarCount;
+}
+
+VolumeGeometry::ScalarsPtr VolumeGeometry::getScalars() const
+{
+    std::lock_guard<std::mutex> lock(_private->mutex);
+    return _private->scalars;
+}
+
+VolumeGeometry::ScalarBinding VolumeGeometry::getScalarBinding() const
+{
+    std::lock_guard<std::mutex> lock(_private->mutex);
+    return _private->binding;
+}
+
+ReportedStatus VolumeGeometry::setScalarRange(const osg::Vec2d& range)
+{
+    if (!(std::isfinite(range.x()) && std::isfinite(range.y()) && range.x() < range.y()))
+        return reported({ErrorCode::VALUE_INVALID, "VolumeGeometry \"" + getName() +
+                                                       "\": the scalar range is " +
+                                                       core::formatNumber(range.x()) + " to " +
+                                                       core::formatNumber(range.y())});
+    std::lock_guard<std::mutex> lock(_private->mutex);
+    _private->range = range;
+    _private->automaticRange = false;
+    ++_private->scalarCount;
+    return {};
+}
+
+osg::Vec2d VolumeGeometry::getScalarRange() const
+{
+    std::lock_guard<std::mutex> lock(_private->mutex);
+    return _private->range;
+}
+
+bool VolumeGeometry::isScalarRangeAutomatic() const
+{
+    std::lock_guard<std::mutex> lock(_private->mutex);
+    return _private->automaticRange;
+}
+
+unsigned VolumeGeometry::getScalarCount() const
+{
+    return _private->scalarCount;
 }
 
 void VolumeGeometry::accept(osg::NodeVisitor& visitor)

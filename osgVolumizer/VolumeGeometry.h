@@ -6,8 +6,10 @@
 #include "core/geometry/TetraSet.h"
 
 #include <osg/Drawable>
+#include <osg/Vec2d>
 
 #include <memory>
+#include <vector>
 
 namespace osgVolumizer {
 
@@ -54,6 +56,32 @@ public:
     TetraSetPtr getTetraSet() const;
     /// Grows with every setTetraSet(). Thread safe.
     unsigned getModifiedCount() const;
+
+    /// What scalars belong to.
+    enum ScalarBinding
+    {
+        PER_VERTEX,     ///< linear in each tetrahedron
+        PER_TETRAHEDRON ///< one value in each
+    };
+    using ScalarsPtr = std::shared_ptr<const std::vector<float>>;
+    /// Values that fill the tetrahedra in place of voxels: unstructured grids. The appearance's
+    /// lookup table is applied to them, and its integral over each tetrahedron is exact. Only they
+    /// are sent to the card when they change, so that a time series on one mesh is cheap. Cells of
+    /// values that are NaN or infinite are left out.
+    /// SIZE_MISMATCH where there are not as many as vertices, or tetrahedra; the old ones stay.
+    ReportedStatus setScalars(std::vector<float> scalars, ScalarBinding binding = PER_VERTEX);
+    /// Back to voxels. setTetraSet() does that too where the number of scalars is no longer right.
+    void removeScalars();
+    /// Null where there are none. Immutable: a frame under way keeps those that it has.
+    ScalarsPtr getScalars() const;
+    ScalarBinding getScalarBinding() const;
+    /// What the lookup table spans. VALUE_INVALID unless both are finite and the second is larger.
+    ReportedStatus setScalarRange(const osg::Vec2d& range);
+    /// Initially the lowest and highest of the finite scalars, whenever these are set.
+    osg::Vec2d getScalarRange() const;
+    bool isScalarRangeAutomatic() const;
+    /// Grows with every change of scalars or their range. Thread safe.
+    unsigned getScalarCount() const;
 
     /// Slices of an earlier frame are drawn again while the view has turned by no more than this,
     /// in radians; 0 (default): only while nothing has changed. Saves polygonizing large meshes in
