@@ -159,7 +159,7 @@ int drawPicture(osg::Node* scene, const char* file)
         bound.center() + osg::Vec3d(-2.8, -4.1, 1.4) * bound.radius(), bound.center(), {0, 0, 1});
     options.background = osg::Vec4(0.10f, 0.11f, 0.13f, 1.0f);
     options.light = true;
-    options.frames = 2;
+    options.frames = 3; // handles keep their size on the screen; the view is at rest thereafter
     const Status status = support::writePicture(support::renderScene(scene, options), file);
     if (!status) std::fprintf(stderr, "osgvolumizerhandles: %s\n", status.text.c_str());
     return status ? 0 : 1;

@@ -17,7 +17,8 @@ struct AllocationRequest
         JOINED_BRICKS,
         BRICK,
         CELLS,
-        TABLE
+        TABLE,
+        TETRAHEDRA
     };
     Kind kind = TARGET;
     glm::ivec3 size{1}; ///< texels

@@ -13,10 +13,11 @@ enum TextureUnit : unsigned
     UNIT_SORTED_FAR,  ///< ranked: the four farthest depths; captured: all sorted depths
     UNIT_SORTED_NEAR, ///< ranked: the four nearest depths; captured: colours
     UNIT_CELLS,
-    UNIT_NEXT_VOXELS,                        ///< of the second of two time steps
-    UNIT_FIRST_CAPTURED,                     ///< and the following: captured depths
-    UNIT_FIRST_PAINT = UNIT_FIRST_CAPTURED,  ///< and the following, in other programs
-    UNIT_COUNT = UNIT_FIRST_CAPTURED + 8 + 1 ///< with four paints and the grid of a cut
+    UNIT_NEXT_VOXELS,                       ///< of the second of two time steps
+    UNIT_FIRST_CAPTURED,                    ///< and the following: captured depths
+    UNIT_FIRST_PAINT = UNIT_FIRST_CAPTURED, ///< and the following, in other programs
+    /// With four paints, the grid of a cut, and what tetrahedra have: see tetraUnitOf().
+    UNIT_COUNT = UNIT_FIRST_CAPTURED + 8 + 1 + 4
 };
 /// Image unit of compute shaders: the last one that every context has, since scenes begin with the
 /// first.

@@ -48,7 +48,7 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, const Brick
     const ProgramFeatures& features = volume.look->features;
     const core::BrickLayout& layout = voxels.getLayout();
     if (layout.brickCount() < 2 || volume.bricks.empty() || !(features.slab || volume.section) ||
-        !volume.prepared->voxelFrame ||
+        !(volume.prepared->voxelFrame || features.tetrahedra) ||
         volume.appearance->getCombineRule() == VolumeAppearance::PAINT)
         return false;
     // Filters must find in a brick all that they need, since its neighbours may not be there.
@@ -64,6 +64,7 @@ bool canBeJoined(const VolumeInstance& volume, const Voxels& voxels, const Brick
 // left out, joining always pays.
 bool isWorthJoining(const VolumeInstance& volume, const SelectedBrick& joined, bool isJoined)
 {
+    if (!volume.prepared->voxelFrame) return true; // they have no order
     if (volume.section) return isJoined || volume.joinsSection;
     if (volume.bricks.size() == 1) return isJoined;
     if (!joined.cells) return true;

@@ -32,7 +32,8 @@ bool cutToOccupied(VolumeInstance& volume, const Voxels& voxels, BrickResidency&
             return false;
         }
     }
-    if (!volume.prepared->voxelFrame || !skipping) return true;
+    if (!(volume.prepared->voxelFrame || volume.look->features.tetrahedra) || !skipping)
+        return true;
     brick.cells = textures.cells().get(voxels, brick.index, query);
     if (!brick.cells) {
         leftOut.unreadable = true;
@@ -111,9 +112,14 @@ bool isWorthSkipping(const VolumeInstance& volume)
     // What it costs to look for the ends of a ray's occupied part, in samples.
     constexpr double COST = 15.0;
     if (!volume.look->features.slab || volume.cellCount == 0) return false;
+    const bool deformed = !volume.prepared->voxelFrame;
     const double emptyShare = 1.0 - double(volume.occupiedCells) / double(volume.cellCount);
-    const double boxEdge =
+    double boxEdge =
         volume.cellSize * std::cbrt(double(volume.cellCount) / double(volume.bricks.size()));
+    // There the ends are looked for in each tetrahedron.
+    if (deformed)
+        boxEdge = std::min(boxEdge, volume.prepared->meanEdge / volume.look->step *
+                                        volume.look->voxelsPerSample);
     return emptyShare * boxEdge > COST * volume.look->voxelsPerSample;
 }
 

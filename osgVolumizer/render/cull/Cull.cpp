@@ -9,6 +9,7 @@
 #include "../volume/GeometryCache.h"
 #include "../volume/MakeLook.h"
 #include "../volume/NearestAppearance.h"
+#include "../volume/SettingsInForce.h"
 #include "../volume/SliceCache.h"
 #include "../volume/VolumeInstance.h"
 #include "AppearanceData.h"
@@ -65,9 +66,11 @@ void registerVolume(std::unique_ptr<VolumeInstance> volume, osgUtil::CullVisitor
 TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visitor)
 {
     const VolumeAppearance& appearance = *volume.appearance;
+    const Precision precision = visitor.getState() ? precisionOf(*visitor.getState()) : Precision();
     const TableChoice choice =
-        chooseTable(appearance, *volume.prepared,
-                    visitor.getState() ? precisionOf(*visitor.getState()) : Precision());
+        volume.prepared->scalars
+            ? chooseTable(appearance, *volume.prepared, volume.geometry->getScalarRange())
+            : chooseTable(appearance, *volume.prepared, precision);
     volume.exactFiltering = choice.exactFiltering;
     if (choice.periodVoxel) volume.sampling.periodVoxel = glm::dvec3(*choice.periodVoxel);
     if (appearance.getTargetFrameTime() > 0.0 && visitor.getFrameStamp()) {
@@ -85,6 +88,23 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
     return choice.table;
 }
 
+// Without voxels a tetrahedron is as long as two; periods are in object units where vertices have
+// colours.
+void setSamplingOfMesh(VolumeInstance& volume)
+{
+    const PreparedGeometry& prepared = *volume.prepared;
+    volume.sampling.voxelSize =
+        glm::dvec3(prepared.scalars ? 0.5 * prepared.meanEdge : 1.0 / prepared.unitsPerFrame);
+}
+
+// A piece for all of what has no bricks.
+SelectedBrick wholeOf(const PreparedGeometry& prepared)
+{
+    SelectedBrick whole;
+    whole.box = whole.clipBox = prepared.regionBox;
+    return whole;
+}
+
 // All that is known before bricks are selected; null where there is nothing to draw.
 std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
                                              const VolumeAppearance& appearance,
@@ -97,14 +117,19 @@ std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
     volume->appearance = &appearance;
     volume->prepared = renderData<GeometryCache>(geometry)->get(geometry, voxels);
     if (!volume->prepared) return nullptr;
-    if (!voxels && volume->prepared->tetras.vertices.format().colorSize == 0) return nullptr;
+    if (volume->prepared->scalars) voxels = nullptr;
+    if (!voxels && !volume->prepared->scalars &&
+        volume->prepared->tetras.vertices.format().colorSize == 0)
+        return nullptr;
     volume->sampling = appearance.getSamplingParameters();
     volume->sampling.maximumSamples = std::min(volume->sampling.maximumSamples, MOST_SAMPLES);
     volume->viewId = viewIdOf(visitor);
     volume->above = stateAbove(visitor.getCurrentStateGraph());
     if (voxels && !volume->prepared->voxelFrame) {
-        const osg::Vec3d s = voxels->getSpacing();
+        const osg::Vec3d s = voxels->getSpacing() / volume->prepared->unitsPerFrame;
         volume->sampling.voxelSize = {s.x(), s.y(), s.z()};
+    } else if (!voxels) {
+        setSamplingOfMesh(*volume);
     }
     volume->frameToEye = new osg::RefMatrix(
         toOsg(toGlm(*visitor.getModelViewMatrix()) * volume->prepared->frameToObject));
@@ -116,7 +141,7 @@ std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
         volume->clipPlanes.push_back(plane);
     TableTexture table;
     if (voxels) volume->steps = timeStepsOf(appearance, visitor.getFrameStamp());
-    if (voxels) table = chooseSampling(*volume, visitor);
+    if (voxels || volume->prepared->scalars) table = chooseSampling(*volume, visitor);
     volume->look = makeLook(*volume, table, visitor);
     return volume;
 }
@@ -124,12 +149,15 @@ std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
 // False where no brick shows anything.
 bool select(VolumeInstance& volume, osgUtil::CullVisitor& visitor)
 {
-    const Voxels* voxels = volume.appearance->getVoxels();
-    if (!voxels) return true;
     const ViewHooks& hooks = ViewHooks::of(visitor.getCurrentCamera());
+    volume.countSamples = volume.look->features.slab && hooks.countSamples;
+    const Voxels* voxels = voxelsIn(*volume.appearance, *volume.prepared);
+    if (!voxels) {
+        if (volume.look->features.slab) volume.bricks.push_back(wholeOf(*volume.prepared));
+        return true;
+    }
     selectBricks(volume, *voxels, hooks, visitor);
     volume.skipping = isWorthSkipping(volume);
-    volume.countSamples = volume.look->features.slab && hooks.countSamples;
     report(volume, *voxels, visitor);
     return !volume.bricks.empty();
 }

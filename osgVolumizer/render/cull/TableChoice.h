@@ -20,5 +20,10 @@ struct TableChoice
 TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
                         const Precision& ofTextures);
 
+/// Of scalars of a range: the table's points where these are read by a shader that is exact, and
+/// entries where a ray function gathers values.
+TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
+                        const osg::Vec2d& scalarRange);
+
 } // namespace render
 } // namespace osgVolumizer

@@ -41,6 +41,7 @@ public:
             settings.reasons.emplace_back("the volume is empty; nothing is drawn");
             return settings;
         }
+        voxels = voxelsIn(appearance, *prepared);
         const TableChoice choice =
             voxels ? chooseTable(appearance, *prepared, leastPrecision()) : TableChoice();
         return render::settingsInForce(appearance, *prepared, choice.table.integrals,

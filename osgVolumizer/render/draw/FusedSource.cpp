@@ -39,7 +39,8 @@ std::string memberCode(const ProgramFeatures& features, bool inOrder)
 {
     const std::string code = volumeSource(features);
     const std::string rays = rayShaderSource(features.rayFunction);
-    if (inOrder) return code + rays + shaderSource("brick.glsl");
+    if (inOrder)
+        return code + rays + shaderSource(features.tetrahedra ? "mesh.glsl" : "brick.glsl");
     return code + shaderSource("member.glsl") + rays;
 }
 
@@ -73,6 +74,7 @@ std::string forEach(const std::string& code, const std::vector<Names>& members)
 std::string volumeSource(const ProgramFeatures& volume)
 {
     std::string code;
+    if (volume.tetrahedra) code += shaderSource("tetrahedra.glsl") + shaderSource("linear.glsl");
     for (const char* file :
          {"filtering.glsl", "voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl", "fog.glsl",
           "cut.glsl", "skipping.glsl", "region.glsl"})

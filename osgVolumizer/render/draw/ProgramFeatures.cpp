@@ -42,6 +42,11 @@ constexpr Flag FLAGS[] = {
     {&ProgramFlags::cut, "CUT"},
     {&ProgramFlags::cutField, "CUT_FIELD"},
     {&ProgramFlags::inOrder, "IN_ORDER"},
+    {&ProgramFlags::tetrahedra, "TETRAHEDRA"},
+    {&ProgramFlags::scalars, "SCALARS"},
+    {&ProgramFlags::cellScalars, "CELL_SCALARS"},
+    {&ProgramFlags::places, "PLACES"},
+    {&ProgramFlags::wholeRuns, "WHOLE_RUNS"},
 };
 // A flag without a row would be missing in the key, and programs would be taken for one another.
 static_assert(sizeof(ProgramFlags) == sizeof(bool) * std::size(FLAGS), "a row for each flag");
@@ -51,6 +56,11 @@ static_assert(sizeof(ProgramFlags) == sizeof(bool) * std::size(FLAGS), "a row fo
 bool ProgramFeatures::gathers() const
 {
     return rowOf(rayFunction).gathers;
+}
+
+bool ProgramFeatures::integratesLight() const
+{
+    return rowOf(rayFunction).integratesLight;
 }
 
 std::uint64_t ProgramFeatures::key() const
@@ -74,6 +84,7 @@ std::string ProgramFeatures::defines() const
     for (const Flag& flag : FLAGS)
         define(this->*flag.member, flag.define);
     define(exact || nearest || cubic || before, "FETCH");
+    define(isExact(), "EXACT_CELLS");
     define(paintCount > 0, "PAINTED");
     define(slotCount > 0, "SLOTS " + std::to_string(slotCount));
     define(filterBits > 0, "FILTER_BITS " + std::to_string(filterBits));

@@ -37,6 +37,11 @@ struct ProgramFlags
     bool cut = false;             ///< by a VolumeCut, more than planes can
     bool cutField = false;        ///< whose distances are those of a grid, too
     bool inOrder = false;         ///< of several that are marched: one after another, not together
+    // Slabs of what is no convex region of voxels in one frame: rays walk through tetrahedra.
+    bool tetrahedra = false;
+    bool scalars = false, cellScalars = false; ///< of vertices or of tetrahedra, in place of voxels
+    bool places = false;    ///< vertices have voxel coordinates: a deformed volume
+    bool wholeRuns = false; ///< voxels in one frame: what is between outer faces is marched at once
 };
 
 /// What a volume's shader has to do; nothing that is not asked for is compiled in.
@@ -52,6 +57,10 @@ struct ProgramFeatures : ProgramFlags
 
     /// Whether surfaces are sorted before the volume, whose shader reads them.
     bool needsSortedSurfaces() const { return ranked || slotCount > 0; }
+
+    /// Whether light is integrated in closed form: along rays, colour and opacity are linear.
+    bool isExact() const { return tetrahedra && !voxels && integratesLight(); }
+    bool integratesLight() const;
 
     /// Whether the rays' values are gathered in a target of their own, and drawn at once, at one
     /// depth.

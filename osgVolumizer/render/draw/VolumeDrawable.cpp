@@ -178,6 +178,9 @@ void VolumeDrawable::drawMarched(osg::RenderInfo& renderInfo,
         if (!applyCutField(state, look.cut, unit)) return;
         uniforms.set("cutField", static_cast<int>(unit));
     }
+    if (_part->features.tetrahedra &&
+        !setTetrahedra(state, uniforms, look, tetraUnitOf(_part->features)))
+        return;
     if (_part->paints)
         setPaints(renderInfo, resources->limits, uniforms, *_part->paints, UNIT_FIRST_PAINT);
     BatchDrawing drawing{renderInfo, resources->limits, uniforms, _part->features, view};

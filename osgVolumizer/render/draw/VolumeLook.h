@@ -2,6 +2,7 @@
 
 #include "../context/LeafState.h"
 #include "../textures/TableTextures.h"
+#include "../textures/TetraTextures.h"
 #include "CutLook.h"
 #include "ProgramFeatures.h"
 
@@ -36,7 +37,8 @@ struct VolumeLook
     /// Half-spaces (frame) that cut: clip planes, those of a VolumeCut, and slabs by those of the
     /// region.
     std::vector<glm::vec4> planes;
-    CutLook cut; ///< with the feature; its number always
+    CutLook cut;                                     ///< with the feature; its number always
+    std::shared_ptr<const TetraTextures> tetrahedra; ///< with the feature
     /// Slabs: part of a pixel, in the frame. Faces are this much larger than what they stand for:
     /// which pixels a segment covers is for the shader to say, whose answer does not depend on how
     /// GL rounds vertices or whom it gives the pixels on an edge.

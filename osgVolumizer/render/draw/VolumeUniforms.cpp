@@ -1,11 +1,15 @@
 #include "VolumeUniforms.h"
 
+#include "../context/Allocation.h"
 #include "../context/ProgramInterface.h"
+#include "../context/ReportOnce.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace osgVolumizer {
@@ -116,11 +120,66 @@ void setDepthTextures(osg::State& state, const Uniforms& uniforms, const PixelRa
     uniforms.set("clipWDirection", glm::vec3(rays.clipWDirection));
 }
 
+GLint largestBufferTexture()
+{
+    constexpr GLenum MAX_TEXTURE_BUFFER_SIZE = 0x8C2B;
+    GLint texels = 0;
+    glGetIntegerv(MAX_TEXTURE_BUFFER_SIZE, &texels);
+    return texels;
+}
+
+// That a ray may meet, in a mesh that is as odd as can be.
+constexpr std::size_t MOST_TETRAHEDRA = 1 << 20;
+
+// False, reported once, where the card refuses it: what it is for is not drawn.
+bool applyBuffer(osg::State& state, osg::TextureBuffer& buffer, unsigned unit)
+{
+    const GLint most = largestBufferTexture();
+    const bool fits = buffer.getImage()->s() <= most;
+    if (fits && applyAllocated(state, AllocationRequest::TETRAHEDRA, buffer, unit)) return true;
+    reportOnce({ErrorCode::TOO_LARGE,
+                "tetrahedra do not fit into the graphics card's memory, or into its buffer "
+                "textures of " +
+                    std::to_string(most) + " texels; volumes of them are not drawn"});
+    return false;
+}
+
 } // namespace
 
 unsigned cutUnitOf(const ProgramFeatures& features)
 {
     return UNIT_FIRST_PAINT + 2 * static_cast<unsigned>(features.paintCount);
+}
+
+unsigned tetraUnitOf(const ProgramFeatures& features)
+{
+    return cutUnitOf(features) + (features.cutField ? 1 : 0);
+}
+
+bool setTetrahedra(osg::State& state, const Uniforms& uniforms, const VolumeLook& look,
+                   unsigned unit)
+{
+    const TetraTextures& t = *look.tetrahedra;
+    const std::pair<const char*, osg::TextureBuffer*> buffers[] = {
+        {"tetraGraph", t.graph.get()},
+        {"tetraPositions", t.positions.get()},
+        {"tetraScalars", t.scalars.get()},
+        {"tetraPlaces", look.features.places ? t.places.get() : nullptr},
+        {"tetraColors", look.features.vertexColors ? t.colors.get() : nullptr}};
+    for (const auto& buffer : buffers) {
+        if (!buffer.second) continue;
+        if (!applyBuffer(state, *buffer.second, unit)) return false;
+        uniforms.set(buffer.first, static_cast<int>(unit++));
+    }
+    uniforms.set("tetraFacesBegin", t.facesBegin);
+    uniforms.set("tetraGridBegin", t.gridBegin);
+    uniforms.set("tetraGridSize", t.gridSize);
+    uniforms.set("tetraGridMin", t.gridMin);
+    uniforms.set("tetraGridScale", t.gridScale);
+    uniforms.set("mostTetrahedra",
+                 static_cast<int>(std::min<std::size_t>(2 * t.cellCount + 16, MOST_TETRAHEDRA)));
+    uniforms.set("lastPoint", look.table.count - 1);
+    return true;
 }
 
 void setSamplers(const Uniforms& uniforms)

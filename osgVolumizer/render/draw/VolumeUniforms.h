@@ -22,5 +22,11 @@ void setUniforms(osg::State& state, const Uniforms& uniforms, const VolumePart& 
                  const PixelRays& rays, const glm::dmat4& frameToEye,
                  const AccumulationBuffers& buffers);
 
+/// The first of the units that tetrahedra take.
+unsigned tetraUnitOf(const ProgramFeatures& features);
+/// What rays walk through, from a texture unit on; false, reported once, where the card refuses it.
+bool setTetrahedra(osg::State& state, const Uniforms& uniforms, const VolumeLook& look,
+                   unsigned unit);
+
 } // namespace render
 } // namespace osgVolumizer

@@ -30,7 +30,7 @@ unsigned lightsOn(const VolumeInstance& volume)
 bool canBeFused(const MergedVolume& volume)
 {
     const ProgramFeatures& features = volume.instance->look->features;
-    return !volume.sliced && features.voxels && !features.gathers() &&
+    return !volume.sliced && features.voxels && !features.tetrahedra && !features.gathers() &&
            volume.instance->above.isUsual() && !volume.instance->bricks.empty();
 }
 

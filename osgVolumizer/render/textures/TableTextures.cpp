@@ -126,6 +126,42 @@ std::shared_ptr<const TableTexture> makeTable(const LookupTable& table, const os
     return made;
 }
 
+// The points that a function needs, between two far away that are like the first and the last.
+std::vector<core::TransferFunction::Point> cornersOf(const core::TransferFunction& function)
+{
+    constexpr double FAR_AWAY = 1e30, TOLERANCE = 1e-9;
+    using Point = core::TransferFunction::Point;
+    const std::vector<Point>& all = function.points();
+    std::vector<Point> corners{{-FAR_AWAY, all.front().color}};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        corners.push_back(all[i]);
+        if (i == 0 || i + 1 == all.size()) continue;
+        const Point &before = corners[corners.size() - 2], &after = all[i + 1];
+        const double width = after.value - before.value;
+        if (!(width > 0.0) || before.value == all[i].value || all[i].value == after.value) continue;
+        const double f = (all[i].value - before.value) / width;
+        const glm::dvec4 off = glm::abs(glm::mix(before.color, after.color, f) - all[i].color);
+        if (std::max({off.x, off.y, off.z, off.w}) < TOLERANCE) corners.pop_back();
+    }
+    corners.push_back({FAR_AWAY, all.back().color});
+    return corners;
+}
+
+std::shared_ptr<const TableTexture> makePoints(const LookupTable& table, const osg::Vec2d& range)
+{
+    auto made = std::make_shared<TableTexture>();
+    made->function = table.getNormalizedFunction(range);
+    const auto corners = cornersOf(*made->function);
+    made->count = static_cast<int>(corners.size());
+    std::vector<glm::vec4> texels;
+    for (const auto& corner : corners) {
+        texels.emplace_back(corner.color);
+        texels.emplace_back(static_cast<float>(corner.value), 0.0f, 0.0f, 0.0f);
+    }
+    made->texture = makeTexture(texels);
+    return made;
+}
+
 // What a lookup table's textures are made from.
 struct TableKey
 {
@@ -203,10 +239,19 @@ TableTexture TableTextures::get(const LookupTable& table, const osg::Vec2d& rang
     if (lookup == VolumeAppearance::BEFORE_INTERPOLATION)
         lookup = VolumeAppearance::AFTER_INTERPOLATION;
     const unsigned modified = table.getModifiedCount();
-    const Key key{&table, modified, range, lookup};
+    const Key key{&table, modified, range, lookup, false};
     std::lock_guard<std::mutex> lock(_mutex);
     if (const auto* known = _tables.find(key)) return **known;
     return *_tables.add(key, SharedTables::of(table)->get(table, {modified, range, lookup}));
+}
+
+TableTexture TableTextures::points(const LookupTable& table, const osg::Vec2d& range)
+{
+    const Key key{&table, table.getModifiedCount(), range, VolumeAppearance::AFTER_INTERPOLATION,
+                  true};
+    std::lock_guard<std::mutex> lock(_mutex);
+    if (const auto* known = _tables.find(key)) return **known;
+    return *_tables.add(key, makePoints(table, range));
 }
 
 void TableTextures::resizeGLObjectBuffers(unsigned int maximum)

@@ -48,6 +48,9 @@ public:
     /// BEFORE_INTERPOLATION needs what AFTER_INTERPOLATION needs.
     TableTexture get(const LookupTable& table, const osg::Vec2d& range,
                      VolumeAppearance::Lookup lookup);
+    /// The points of a table, and not entries: two texels each, colour and opacity, then the
+    /// fraction of the range where it is; the first and last are far away. `count` is theirs.
+    TableTexture points(const LookupTable& table, const osg::Vec2d& range);
     void resizeGLObjectBuffers(unsigned int maximum);
     void releaseGLObjects(osg::State* state) const;
 
@@ -58,10 +61,11 @@ private:
         unsigned modifiedCount;
         osg::Vec2d range;
         VolumeAppearance::Lookup lookup;
+        bool points = false;
         bool operator==(const Key& o) const
         {
             return table == o.table && modifiedCount == o.modifiedCount && range == o.range &&
-                   lookup == o.lookup;
+                   lookup == o.lookup && points == o.points;
         }
     };
     static constexpr std::size_t CAPACITY = 3;

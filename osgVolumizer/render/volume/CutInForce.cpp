@@ -1,5 +1,7 @@
 #include "CutInForce.h"
 
+#include "SettingsInForce.h"
+
 #include "../../VolumeCut.h"
 #include "../textures/BrickCells.h"
 #include "../textures/CutTextures.h"
@@ -44,13 +46,13 @@ std::shared_ptr<const core::Cut> cutInForce(const VolumeAppearance& appearance,
 {
     const VolumeCut* cut = appearance.getCut();
     if (!cut || cut->getNumRegions() == 0) return nullptr;
-    const Voxels* voxels = appearance.getVoxels();
+    const Voxels* voxels = voxelsIn(appearance, prepared);
     return cut->cutOf(cutBox(prepared, voxels), anyPlanes && (prepared.voxelFrame || !voxels));
 }
 
 std::vector<core::Plane> planesOfCut(const VolumeInstance& volume)
 {
-    const Voxels* voxels = volume.appearance->getVoxels();
+    const Voxels* voxels = voxelsIn(*volume.appearance, *volume.prepared);
     std::vector<core::Plane> planes;
     if (!volume.cut || !hasExactPlanes(*volume.prepared, *volume.cut, voxels)) return planes;
     const glm::dmat4 map = toCut(*volume.prepared, voxels);
@@ -70,7 +72,7 @@ CutLook makeCutLook(const VolumeInstance& volume, const glm::dvec3& centerFrame,
     CutLook look;
     if (!volume.cut) return look;
     const core::Cut& cut = *volume.cut;
-    const Voxels* voxels = volume.appearance->getVoxels();
+    const Voxels* voxels = voxelsIn(*volume.appearance, *volume.prepared);
     look.id = cut.id;
     look.fromVolume = toCut(*volume.prepared, voxels);
     // Far from the origin floats would lose it.

@@ -5,6 +5,8 @@
 #include "../../Voxels.h"
 #include "SliceCache.h"
 
+#include "../context/ReportOnce.h"
+
 namespace osgVolumizer {
 namespace render {
 
@@ -12,7 +14,9 @@ GeometryCache::GeometryCache() : _slices(std::make_shared<SliceCache>()) {}
 
 GeometryCache::Key GeometryCache::keyOf(const VolumeGeometry& geometry, const Voxels* voxels)
 {
-    return {geometry.getModifiedCount(), voxels, voxels ? voxels->getLayoutCount() : 0};
+    const bool scalars = geometry.getScalars() != nullptr;
+    if (scalars) voxels = nullptr;
+    return {geometry.getModifiedCount(), voxels, voxels ? voxels->getLayoutCount() : 0, scalars};
 }
 
 std::shared_ptr<const PreparedGeometry> GeometryCache::get(const VolumeGeometry& geometry,
@@ -22,7 +26,26 @@ std::shared_ptr<const PreparedGeometry> GeometryCache::get(const VolumeGeometry&
     std::lock_guard<std::mutex> lock(_mutex);
     if (const auto* known = _prepared.find(key)) return *known;
     const auto set = geometry.getTetraSet();
-    return _prepared.add(key, set->empty() ? nullptr : prepareGeometry(*set, voxels));
+    return _prepared.add(key, set->empty() ? nullptr : prepareGeometry(*set, voxels, key.scalars));
+}
+
+std::shared_ptr<const TetraTextures> GeometryCache::tetrahedra(const VolumeGeometry& geometry,
+                                                               const Voxels* voxels)
+{
+    const auto prepared = get(geometry, voxels);
+    const Key key = keyOf(geometry, voxels);
+    std::lock_guard<std::mutex> lock(_mutex);
+    const auto* known = _graphs.find(key);
+    auto textures = known ? *known : nullptr;
+    if (!textures) {
+        textures = makeTetraTextures(prepared->tetras, !prepared->voxelFrame);
+        if (!textures->oddities.empty())
+            reportOnce({ErrorCode::VALUE_INVALID,
+                        "VolumeGeometry \"" + geometry.getName() + "\": " + textures->oddities});
+    }
+    if (prepared->scalars && textures->scalarCount != geometry.getScalarCount())
+        textures = withScalars(*textures, geometry);
+    return known && *known == textures ? textures : _graphs.add(key, textures);
 }
 
 osg::ref_ptr<osg::Geometry> GeometryCache::outlines(const VolumeGeometry& geometry,
@@ -43,6 +66,9 @@ void GeometryCache::resizeGLObjectBuffers(unsigned int maximum)
     std::lock_guard<std::mutex> lock(_mutex);
     for (const auto& lines : _outlines)
         lines.value->resizeGLObjectBuffers(maximum);
+    for (const auto& graph : _graphs)
+        for (osg::Texture* texture : graph.value->all())
+            texture->resizeGLObjectBuffers(maximum);
 }
 
 void GeometryCache::releaseGLObjects(osg::State* state) const
@@ -50,6 +76,9 @@ void GeometryCache::releaseGLObjects(osg::State* state) const
     std::lock_guard<std::mutex> lock(_mutex);
     for (const auto& lines : _outlines)
         lines.value->releaseGLObjects(state);
+    for (const auto& graph : _graphs)
+        for (osg::Texture* texture : graph.value->all())
+            texture->releaseGLObjects(state);
 }
 
 } // namespace render

@@ -2,6 +2,7 @@
 
 #include "../../core/RecencyCache.h"
 #include "../context/RenderDataAccess.h"
+#include "../textures/TetraTextures.h"
 #include "PreparedGeometry.h"
 
 #include <osg/Geometry>
@@ -26,6 +27,10 @@ public:
     SliceCache& slices() const { return *_slices; }
     std::shared_ptr<const PreparedGeometry> get(const VolumeGeometry& geometry,
                                                 const Voxels* voxels);
+    /// What rays walk through: the graph, and what fills it. Of scalars that change only these are
+    /// made anew. Null where it does not fit into a buffer texture.
+    std::shared_ptr<const TetraTextures> tetrahedra(const VolumeGeometry& geometry,
+                                                    const Voxels* voxels);
     /// The edges of the tetrahedra, and of the bricks where these are in the same frame, as lines
     /// in the frame of the prepared geometry. Expects that there are tetrahedra.
     osg::ref_ptr<osg::Geometry> outlines(const VolumeGeometry& geometry, const Voxels* voxels);
@@ -39,10 +44,11 @@ private:
         unsigned geometryCount;
         const Voxels* voxels;
         unsigned layoutCount;
+        bool scalars;
         bool operator==(const Key& o) const
         {
             return geometryCount == o.geometryCount && voxels == o.voxels &&
-                   layoutCount == o.layoutCount;
+                   layoutCount == o.layoutCount && scalars == o.scalars;
         }
     };
     static constexpr std::size_t CAPACITY = 4;
@@ -53,6 +59,7 @@ private:
     mutable std::mutex _mutex; ///< of what follows
     core::RecencyCache<Key, std::shared_ptr<const PreparedGeometry>> _prepared{CAPACITY};
     core::RecencyCache<Key, osg::ref_ptr<osg::Geometry>> _outlines{CAPACITY};
+    core::RecencyCache<Key, std::shared_ptr<const TetraTextures>> _graphs{CAPACITY};
 };
 
 } // namespace render

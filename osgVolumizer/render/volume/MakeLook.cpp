@@ -3,6 +3,7 @@
 #include "../context/ContextLimits.h"
 #include "../context/Matrices.h"
 #include "CutInForce.h"
+#include "GeometryCache.h"
 #include "PixelFootprint.h"
 #include "SettingsInForce.h"
 
@@ -102,12 +103,17 @@ void setInterpolation(const VolumeInstance& volume, const TableTexture& table,
 void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
                  ProgramFeatures& features, Reasons& reasons)
 {
-    const Voxels* voxels = appearance.getVoxels();
+    const Voxels* voxels = voxelsIn(appearance, prepared);
     features.slab = usesSlabs(appearance, prepared);
     features.voxels = voxels != nullptr;
     features.rgba = voxels && voxels->getComponents() == 4;
     features.voxelCoordinates = !features.slab && voxels && !prepared.voxelFrame;
-    features.vertexColors = prepared.tetras.vertices.format().colorSize > 0;
+    features.vertexColors = !prepared.scalars && prepared.tetras.vertices.format().colorSize > 0;
+    features.tetrahedra = usesTetrahedra(appearance, prepared);
+    features.scalars = prepared.scalars;
+    features.places = features.tetrahedra && voxels && !prepared.voxelFrame;
+    features.wholeRuns =
+        features.tetrahedra && voxels && prepared.voxelFrame && !features.vertexColors;
     features.opaqueDepth = features.slab;
     features.rayFunction = usedRayFunction(appearance, prepared, reasons);
     features.shading = usesShading(appearance, prepared, features.rayFunction, reasons);
@@ -118,6 +124,11 @@ void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& pre
                                appearance.getGradients() == VolumeAppearance::PRECOMPUTED;
 }
 
+void setMaterial(const VolumeAppearance::Material& m, VolumeLook& look)
+{
+    look.material = glm::vec4(m.ambient, m.diffuse, m.specular, m.shininess);
+}
+
 void setValues(const VolumeAppearance& appearance, const Voxels& voxels, VolumeLook& look)
 {
     const glm::dvec2 fraction = texelToRangeFraction(voxels);
@@ -126,9 +137,20 @@ void setValues(const VolumeAppearance& appearance, const Voxels& voxels, VolumeL
     look.texelToFraction = fraction.x;
     const double iso = (appearance.getIsoValue() - range.x()) / (range.y() - range.x());
     look.isoTexel = inFloats((iso - fraction.y) / fraction.x);
-    const VolumeAppearance::Material& m = appearance.getMaterial();
-    look.material = glm::vec4(m.ambient, m.diffuse, m.specular, m.shininess);
+    setMaterial(appearance.getMaterial(), look);
     if (look.features.gradientTexture) look.gradientDecode = gradientDecode(voxels);
+}
+
+// Scalars are fractions of their range.
+void setScalars(const VolumeInstance& volume, VolumeLook& look)
+{
+    const VolumeGeometry& geometry = *volume.geometry;
+    const osg::Vec2d range = geometry.getScalarRange();
+    look.features.cellScalars = geometry.getScalarBinding() == VolumeGeometry::PER_TETRAHEDRON;
+    look.valueToEntry = glm::vec2(look.table.count - 1.0, 0.0);
+    look.isoTexel =
+        inFloats((volume.appearance->getIsoValue() - range.x()) / (range.y() - range.x()));
+    setMaterial(volume.appearance->getMaterial(), look);
 }
 
 } // namespace
@@ -146,7 +168,10 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     if (volume.above.fog) look->fog = *volume.above.fog;
     features.fog = volume.above.fog.has_value();
     features.spherical = !features.slab && volume.sampling.mode == SamplingMode::SPHERICAL;
-    if (appearance.getVoxels()) setValues(appearance, *appearance.getVoxels(), *look);
+    if (prepared.scalars)
+        setScalars(volume, *look);
+    else if (appearance.getVoxels())
+        setValues(appearance, *appearance.getVoxels(), *look);
     look->frameToUnits =
         frameToUnits(glm::dmat3(prepared.frameToObject), appearance.getEffectiveOpacityUnit());
     look->center = prepared.regionBox.center();
@@ -160,6 +185,9 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     features.blendsSteps = volume.steps.blended;
     if (features.voxels) setInterpolation(volume, table, look->voxelsPerSample, features, reasons);
     reportReasons(appearance, reasons);
+    if (features.tetrahedra)
+        look->tetrahedra = renderData<GeometryCache>(*volume.geometry)
+                               ->tetrahedra(*volume.geometry, appearance.getVoxels());
     if (features.slab) {
         look->regionMin = glm::vec3(prepared.regionBox.min);
         look->regionMax = glm::vec3(prepared.regionBox.max);

@@ -1,6 +1,7 @@
 #include "PreparedGeometry.h"
 
 #include "../../Voxels.h"
+#include "../../core/geometry/TetraMesh.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/mat3x3.hpp>
@@ -86,6 +87,21 @@ core::TetraSet mapped(const core::TetraSet& set, const glm::dmat4& map, bool kee
     return result;
 }
 
+// Of the longest side of a box; 1 where there is none.
+double powerOfTwoAbout(const glm::dvec3& size)
+{
+    const double longest = std::max({size.x, size.y, size.z});
+    return longest > 0.0 ? std::exp2(std::round(std::log2(longest))) : 1.0;
+}
+
+double meanEdgeOf(const core::TetraSet& set)
+{
+    constexpr double CUBED = 8.485281374238571; // of the edge, over the volume: 6 sqrt(2)
+    const double edge =
+        std::cbrt(CUBED * core::volume(set) / static_cast<double>(set.tetraCount()));
+    return edge > 0.0 ? edge : 1.0;
+}
+
 // The index of the axis that a normal lies along, or -1.
 int axisOf(const glm::dvec3& n)
 {
@@ -113,10 +129,12 @@ void splitRegion(PreparedGeometry& prepared, const core::Box3d& voxelExtent)
 } // namespace
 
 std::shared_ptr<const PreparedGeometry> prepareGeometry(const core::TetraSet& set,
-                                                        const Voxels* voxels)
+                                                        const Voxels* voxels, bool scalars)
 {
     auto result = std::make_shared<PreparedGeometry>();
-    const bool explicitCoordinates = set.vertices.format().voxelCoordinateSize == 3;
+    if (scalars) voxels = nullptr;
+    result->scalars = scalars;
+    const bool explicitCoordinates = !scalars && set.vertices.format().voxelCoordinateSize == 3;
     std::optional<glm::dmat4> objectToVoxel;
     if (explicitCoordinates)
         objectToVoxel = globalVoxelMap(set);
@@ -128,10 +146,14 @@ std::shared_ptr<const PreparedGeometry> prepareGeometry(const core::TetraSet& se
             explicitCoordinates ? affineInverse(*objectToVoxel) : voxelsToObject(*voxels);
         result->tetras = mapped(set, *objectToVoxel, false);
     } else {
-        const glm::dvec3 center = set.bounds().center();
-        result->frameToObject = glm::translate(glm::dmat4(1.0), center);
-        result->tetras = mapped(set, glm::translate(glm::dmat4(1.0), -center), true);
+        const core::Box3d box = set.bounds();
+        result->unitsPerFrame = powerOfTwoAbout(box.size());
+        const glm::dvec3 scale(result->unitsPerFrame);
+        result->frameToObject = glm::scale(glm::translate(glm::dmat4(1.0), box.center()), scale);
+        result->tetras = mapped(
+            set, glm::translate(glm::scale(glm::dmat4(1.0), 1.0 / scale), -box.center()), !scalars);
     }
+    result->meanEdge = meanEdgeOf(result->tetras);
     result->bounds = result->tetras.bounds();
     result->regionBox = result->bounds;
     if (result->voxelFrame && voxels) {

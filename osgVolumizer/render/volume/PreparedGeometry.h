@@ -16,7 +16,8 @@ namespace render {
 
 /// A tetra set in the frame that is sent to GL. Where voxel coordinates are one affine function of
 /// position (always, without explicit ones) that frame is the voxel frame; else it is the object
-/// frame moved to the centre of the bounds, and voxel coordinates stay a field of the vertices.
+/// frame moved to the centre of the bounds and scaled to their size, by a power of two, and voxel
+/// coordinates stay a field of the vertices.
 /// Either way the numbers are small, so floats keep the precision that doubles in the object frame
 /// had.
 struct PreparedGeometry
@@ -24,6 +25,9 @@ struct PreparedGeometry
     core::TetraSet tetras;
     glm::dmat4 frameToObject{1.0};
     bool voxelFrame = true;
+    bool scalars = false;                     ///< fill the tetrahedra in place of voxels
+    double unitsPerFrame = 1.0;               ///< object units per frame unit, where that is one
+    double meanEdge = 1.0;                    ///< frame; of a tetrahedron of mean volume, regular
     core::Box3d bounds;                       ///< of the tetrahedra, in the frame
     std::optional<core::ConvexRegion> region; ///< in the frame, where the tetrahedra are convex
     /// What of the region its axis-aligned half-spaces leave (and the voxels), and the half-spaces
@@ -32,9 +36,9 @@ struct PreparedGeometry
     std::vector<core::Plane> obliquePlanes;
 };
 
-/// The tetra set of a geometry, seen with voxels or none (null).
+/// The tetra set of a geometry, seen with voxels or none (null), or with scalars in their place.
 std::shared_ptr<const PreparedGeometry> prepareGeometry(const core::TetraSet& set,
-                                                        const Voxels* voxels);
+                                                        const Voxels* voxels, bool scalars = false);
 
 } // namespace render
 } // namespace osgVolumizer

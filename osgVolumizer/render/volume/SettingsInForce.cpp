@@ -3,6 +3,8 @@
 #include "../context/ReportOnce.h"
 #include "../draw/RayFunctions.h"
 
+#include <algorithm>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -14,25 +16,42 @@ bool overlapSuffices(const Voxels& voxels, int samples)
            voxels.getOverlap() >= samples;
 }
 
+// Rays through a deformed volume meet its bricks in any order, each perhaps more than once.
+bool fitIntoOneTexture(const Voxels& voxels)
+{
+    constexpr int LARGEST_SIDE = 2048; // that every card with OpenGL 4 has
+    constexpr double MOST_SAMPLES = 1 << 28;
+    const glm::ivec3 size = voxels.getLayout().size();
+    if (voxels.isPaged()) return false;
+    return voxels.getLayout().brickCount() == 1 ||
+           (voxels.getOverlap() >= 1 && std::max({size.x, size.y, size.z}) <= LARGEST_SIDE &&
+            double(size.x) * double(size.y) * double(size.z) <= MOST_SAMPLES);
+}
+
+bool wantsSurfaces(const VolumeAppearance& appearance)
+{
+    return appearance.getTechnique() == VolumeAppearance::AUTOMATIC &&
+           (appearance.getSamplingMode() != SamplingMode::VIEWPORT_ALIGNED ||
+            appearance.getSamplingSpace() != SamplingSpace::OBJECT);
+}
+
 // What rules slabs out; the first thing that does. Empty where nothing does.
 std::string whyNoSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
 {
-    if (!appearance.getVoxels()) return "there are no voxels";
-    if (!prepared.voxelFrame) return "no one affine map leads to the voxel frame";
-    if (!prepared.region) return "the region is not convex";
-    if (prepared.tetras.vertices.format().colorSize != 0) return "vertices have colours";
-    const bool automatic = appearance.getTechnique() == VolumeAppearance::AUTOMATIC;
-    if (automatic && appearance.getSamplingMode() != SamplingMode::VIEWPORT_ALIGNED)
-        return "sampling surfaces other than VIEWPORT_ALIGNED are asked for";
-    if (automatic && appearance.getSamplingSpace() != SamplingSpace::OBJECT)
-        return "a sampling space other than OBJECT is asked for";
-    return {};
+    if (prepared.scalars) return {};
+    const Voxels* voxels = appearance.getVoxels();
+    if (voxels && !prepared.voxelFrame && !fitIntoOneTexture(*voxels))
+        return "the voxels of a deformed volume do not fit into one texture";
+    if (!wantsSurfaces(appearance)) return {};
+    return appearance.getSamplingMode() != SamplingMode::VIEWPORT_ALIGNED
+               ? "sampling surfaces other than VIEWPORT_ALIGNED are asked for"
+               : "a sampling space other than OBJECT is asked for";
 }
 
 // Another lookup than what is asked for is in force.
 const char* const WHY_ANOTHER_LOOKUP =
-    "another lookup needs composited voxels of one component in one voxel frame, interpolated "
-    "linearly or better; lookup is after interpolation";
+    "another lookup needs composited voxels of one component, in one voxel frame or marched, "
+    "interpolated linearly or better; lookup is after interpolation";
 
 void explainTechnique(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
                       VolumeAppearance::Settings& settings)
@@ -42,9 +61,12 @@ void explainTechnique(const VolumeAppearance& appearance, const PreparedGeometry
         usesSlabs(appearance, prepared) ? VolumeAppearance::SLABS : VolumeAppearance::SLICES;
     if (settings.technique == asked) return;
     const std::string why = whyNoSlabs(appearance, prepared);
-    settings.reasons.push_back(why.empty() ? "the region is convex, in one voxel frame; the "
-                                             "technique is slabs"
-                                           : why + "; the technique is slices");
+    if (!why.empty())
+        settings.reasons.push_back(why + "; the technique is slices");
+    else if (asked == VolumeAppearance::SLICES)
+        settings.reasons.emplace_back("scalars are not drawn as slices; the technique is slabs");
+    else
+        settings.reasons.emplace_back("rays can be marched; the technique is slabs");
 }
 
 void explainLookup(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
@@ -95,29 +117,40 @@ VolumeAppearance::Interpolation usedInterpolation(const VolumeAppearance& appear
     return VolumeAppearance::LINEAR;
 }
 
+const Voxels* voxelsIn(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
+{
+    return prepared.scalars ? nullptr : appearance.getVoxels();
+}
+
 bool usesSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
 {
-    return appearance.getTechnique() != VolumeAppearance::SLICES &&
-           whyNoSlabs(appearance, prepared).empty();
+    return prepared.scalars || (appearance.getTechnique() != VolumeAppearance::SLICES &&
+                                whyNoSlabs(appearance, prepared).empty());
+}
+
+bool usesTetrahedra(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
+{
+    const bool convex = appearance.getVoxels() && prepared.voxelFrame && prepared.region &&
+                        prepared.tetras.vertices.format().colorSize == 0;
+    return usesSlabs(appearance, prepared) && !convex;
 }
 
 VolumeAppearance::RayFunction usedRayFunction(const VolumeAppearance& appearance,
                                               const PreparedGeometry& prepared, Reasons& reasons)
 {
     const auto asked = appearance.getRayFunction();
-    const Voxels* voxels = appearance.getVoxels();
-    if (!voxels) return VolumeAppearance::COMPOSITE;
+    const Voxels* voxels = voxelsIn(appearance, prepared);
+    if (!voxels && !prepared.scalars) return VolumeAppearance::COMPOSITE;
     const RayFunctionRow& row = rowOf(asked);
     const std::string name =
         std::string("ray function ") + VolumeAppearance::RAY_FUNCTION_NAMES[asked];
-    if (row.needsOneComponent && voxels->getComponents() != 1) {
+    if (row.needsOneComponent && voxels && voxels->getComponents() != 1) {
         reasons.push_back(name + " needs voxels of one component, but these have " +
                           std::to_string(voxels->getComponents()) + "; they are composited");
         return VolumeAppearance::COMPOSITE;
     }
     if (row.needsSlabs && !usesSlabs(appearance, prepared)) {
-        reasons.push_back(name + " needs slabs, and so a convex region in one voxel frame; the "
-                                 "volume is composited");
+        reasons.push_back(name + " needs slabs; the volume is composited");
         return VolumeAppearance::COMPOSITE;
     }
     return asked;
@@ -126,18 +159,17 @@ VolumeAppearance::RayFunction usedRayFunction(const VolumeAppearance& appearance
 bool usesShading(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
                  VolumeAppearance::RayFunction function, Reasons& reasons)
 {
-    const Voxels* voxels = appearance.getVoxels();
-    if (!appearance.getShading() || !voxels) return false;
+    const Voxels* voxels = voxelsIn(appearance, prepared);
+    if (!appearance.getShading() || (!voxels && !prepared.scalars)) return false;
     if (rowOf(function).gathers) { // values have no colour yet
         reasons.push_back("what the ray function gathers is not lit");
         return false;
     }
-    if (!prepared.voxelFrame) {
-        reasons.push_back("shading needs one affine map to the voxel frame; the deformed "
-                          "volume is not lit");
+    if (!prepared.voxelFrame && !usesSlabs(appearance, prepared)) {
+        reasons.push_back("slices of a deformed volume are not lit");
         return false;
     }
-    if (!overlapSuffices(*voxels, appearance.getRequiredOverlap()))
+    if (voxels && !overlapSuffices(*voxels, appearance.getRequiredOverlap()))
         reasons.push_back("shading without seams needs bricks that share " +
                           std::to_string(appearance.getRequiredOverlap()) +
                           " samples, but the voxels' overlap is " +
@@ -169,7 +201,8 @@ VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
     // Runs of values need scalars that vary, and the ray in the voxel frame, which slices of a
     // deformed volume do not know.
     Reasons ofRayFunction;
-    const bool runs = prepared.voxelFrame && appearance.getVoxels()->getComponents() == 1 &&
+    const bool rays = prepared.voxelFrame || usesSlabs(appearance, prepared);
+    const bool runs = rays && appearance.getVoxels()->getComponents() == 1 &&
                       appearance.getInterpolation() != VolumeAppearance::NEAREST &&
                       rowOf(usedRayFunction(appearance, prepared, ofRayFunction)).integratesLight;
     return runs ? appearance.getLookup() : VolumeAppearance::AFTER_INTERPOLATION;
@@ -213,7 +246,7 @@ VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
     settings.rayFunction = usedRayFunction(appearance, prepared, reasons);
     settings.shading = usesShading(appearance, prepared, settings.rayFunction, reasons);
     explainSampling(appearance, prepared, reasons);
-    if (!appearance.getVoxels()) return settings;
+    if (!voxelsIn(appearance, prepared)) return settings;
     explainLookup(appearance, prepared, integrals, settings);
     if (appearance.getErrorTolerance() > 0.0) (void)canKeepTolerance(appearance, prepared, reasons);
     settings.exactFiltering = settings.interpolation == VolumeAppearance::LINEAR &&

@@ -13,6 +13,9 @@ namespace render {
 /// Why settings of an appearance are not in force: what cannot be done, and what is done instead.
 using Reasons = std::vector<std::string>;
 
+/// The voxels that fill a geometry; null where there are none, or scalars.
+const Voxels* voxelsIn(const VolumeAppearance& appearance, const PreparedGeometry& prepared);
+
 // Each of the following adds its reasons, which a frame reports as errors.
 
 /// What bricks that share too few samples leave of CUBIC.
@@ -20,6 +23,8 @@ VolumeAppearance::Interpolation usedInterpolation(const VolumeAppearance& appear
                                                   Reasons& reasons);
 /// Slabs, where they were not ruled out, or slices.
 bool usesSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepared);
+/// Slabs whose rays walk through tetrahedra: of all but convex regions of voxels in one frame.
+bool usesTetrahedra(const VolumeAppearance& appearance, const PreparedGeometry& prepared);
 VolumeAppearance::RayFunction usedRayFunction(const VolumeAppearance& appearance,
                                               const PreparedGeometry& prepared, Reasons& reasons);
 bool usesShading(const VolumeAppearance& appearance, const PreparedGeometry& prepared,

@@ -69,7 +69,9 @@ private:
     void appendBrick(const SelectedBrick& brick, const core::DepthInterval& interval)
     {
         const glm::dvec3& margin = _volume.look->pixelMargin;
-        const core::Box3d box{brick.box.min - margin, brick.box.max + margin};
+        const bool inFrame = _volume.prepared->voxelFrame;
+        const core::Box3d& shown = inFrame ? brick.box : _volume.prepared->regionBox;
+        const core::Box3d box{shown.min - margin, shown.max + margin};
         const core::DepthInterval depths = depthsOf(box);
         if (depths.farDepth <= interval.nearDepth || depths.nearDepth >= interval.farDepth) return;
         _polytope.setBox(box);

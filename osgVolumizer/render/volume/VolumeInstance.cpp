@@ -45,9 +45,10 @@ void findDepths(VolumeInstance& volume, const core::View& view)
                                    std::min(range.farDepth, clip.farDepth)};
     };
     core::DepthInterval shown{UNBOUNDED_DEPTH, -UNBOUNDED_DEPTH}, whole = shown;
+    const bool inFrame = volume.prepared->voxelFrame;
     for (const SelectedBrick& brick : volume.bricks)
-        expand(shown, brick.box, view.toEye);
-    if (volume.bricks.empty()) expand(shown, volume.prepared->bounds, view.toEye);
+        if (inFrame) expand(shown, brick.box, view.toEye);
+    if (volume.bricks.empty() || !inFrame) expand(shown, volume.prepared->bounds, view.toEye);
     expand(whole, volume.prepared->regionBox, view.toEye);
     volume.depth = between(shown);
     volume.wholeDepth = between(whole);

@@ -1,5 +1,12 @@
 // What a VolumeCut leaves of a volume: see core/cutting/Cut.h.
 
+// A point of the ray in the frame of cuts before cutFromVolume: of deformed voxels their own.
+#ifdef PLACES
+vec3 cutPoint(vec3 origin, vec3 direction, float t) { return rayVoxelOrigin + t * rayVoxelRate; }
+#else
+vec3 cutPoint(vec3 origin, vec3 direction, float t) { return origin + t * direction; }
+#endif
+
 #ifdef CUT
 uniform mat4 cutFromVolume;
 uniform int cutPlaneCount, cutShapeCount;

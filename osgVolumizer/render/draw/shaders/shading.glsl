@@ -13,7 +13,9 @@ uniform vec4 material; // ambient, diffuse, specular, shininess
 uniform mat3 gradientToEye; // texels per voxel -> normal in the eye frame, in ranges per opacity unit
 uniform mat3 rayOriginEye, rayDirectionEye; // times (dx, dy, 1)
 
-#ifdef GRADIENT_TEXTURE
+#ifdef SCALARS
+vec3 gradientAt(vec3 place) { return vec3(1.0, 0.0, 0.0); }
+#elif defined(GRADIENT_TEXTURE)
 uniform vec2 gradientDecode; // scale, offset
 
 vec3 gradientAt(vec3 place)
@@ -49,7 +51,11 @@ vec3 gradientAt(vec3 place)
 
 vec3 shade(vec3 color, vec3 place, vec3 eye, vec3 toEye)
 {
+#if defined(PLACES) || defined(SCALARS)
+    vec3 n = gradientToEye * (placesToFrame * gradientAt(place));
+#else
     vec3 n = gradientToEye * gradientAt(place);
+#endif
     // No direction where nothing varies, without a jump to it.
     n *= inversesqrt(dot(n, n) + 1e-8);
     vec3 diffuse = vec3(material.x), specular = vec3(0.0);

@@ -29,6 +29,14 @@ vec4 classifyTexel(TEXEL texel)
 }
 #endif
 
+#ifdef SCALARS
+vec4 classifyTexel(float fraction)
+{
+    vec4 c = pointColor(fraction);
+    return vec4(c.rgb, extinctionOf(c.a));
+}
+#endif
+
 #ifdef BEFORE
 // Adds one classified sample: extinction times colour, and extinction.
 void addSample(ivec3 i, float weight, inout vec4 sum)
@@ -40,7 +48,9 @@ void addSample(ivec3 i, float weight, inout vec4 sum)
 
 vec4 classify(vec3 place)
 {
-#ifndef VOXELS
+#ifdef SCALARS
+    return classifyTexel(voxelAt(place));
+#elif !defined(VOXELS)
     return vec4(1.0, 1.0, 1.0, 1.0);
 #elif defined(BEFORE)
     ivec3 cell;

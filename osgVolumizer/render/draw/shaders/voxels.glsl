@@ -113,3 +113,25 @@ TEXEL voxelAt(vec3 place)
 #endif
 }
 #endif
+
+#ifdef SCALARS
+// Scalars of tetrahedra are places of their own.
+#define TEXEL float
+#define VOXEL_LENGTH 1.0
+vec3 placeOf(vec3 scalar) { return scalar; }
+float voxelAt(vec3 place) { return place.x; }
+#endif
+
+#if defined(VOXELS) || defined(SCALARS)
+// The ray as places: that of the frame, which is the voxel frame, or that of the tetrahedron at hand.
+#if defined(PLACES) || defined(SCALARS)
+vec3 rayVoxelOrigin, rayVoxelRate;
+#define VOXEL_RAY(origin, direction) rayVoxelOrigin, rayVoxelRate
+#define VOXEL_RATE(direction) (VOXEL_LENGTH * rayVoxelRate)
+vec3 placeOnRay(vec3 origin, vec3 direction, float t) { return placeOf(rayVoxelOrigin + t * rayVoxelRate); }
+#else
+#define VOXEL_RAY(origin, direction) origin, direction
+#define VOXEL_RATE(direction) (VOXEL_LENGTH * direction)
+vec3 placeOnRay(vec3 origin, vec3 direction, float t) { return placeOf(origin + t * direction); }
+#endif
+#endif

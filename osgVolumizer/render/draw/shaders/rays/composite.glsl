@@ -1,5 +1,9 @@
 // Light emitted and absorbed along the ray.
 
+#define EMPTY_RAY vec4(0.0)
+#define JOIN_RAY(front, behind) (front + (1.0 - front.a) * behind)
+#define RAY_DONE(light) (light.a >= 1.0 - OPAQUE_ENOUGH)
+
 #if defined(MEMBER) && defined(PREINTEGRATED)
 float knownDepth = -1e30; // where the entry and the integral of the last step's end are known
 float knownEntry;
@@ -50,9 +54,12 @@ void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float
     float nextEntry = tableEntryAfter(entry, place);
     vec4 nextIntegral = tableIntegral(nextEntry);
     vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
-    c.a *= keptUntil(origin + t * direction);
+    c.a *= keptUntil(cutPoint(origin, direction, t));
+#ifdef VERTEX_COLORS
+    c *= colorOnRay(t - 0.5 * depth);
+#endif
 #ifdef SHADING
-    c = lit(c, place - 0.5 * depth * VOXEL_LENGTH * direction, t - 0.5 * depth);
+    c = lit(c, place - 0.5 * depth * VOXEL_RATE(direction), t - 0.5 * depth);
 #endif
 #ifdef PAINTED
     c.rgb = painted(c.rgb, origin + (t - 0.5 * depth) * direction);
@@ -70,15 +77,15 @@ void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
 {
     float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
-    vec2 brick = boxSegment(brickMin, brickMax, origin, direction);
+    vec2 brick = boxSegment(brickMin, brickMax, VOXEL_RAY(origin, direction));
     float start = max(tNear, brick.x), stop = min(tFar, brick.y);
 #ifdef SKIPPING
-    shown = occupiedPart(origin, direction, max(start, shown.x), min(stop, shown.y));
+    shown = occupiedPart(VOXEL_RAY(origin, direction), max(start, shown.x), min(stop, shown.y));
 #endif
     float i = max(0.0, floor((shown.x - tNear) / dt));
     float last = min(count, ceil((shown.y - tNear) / dt));
     float unitsPerDepth = length(frameToUnits * direction);
-    vec3 rate = VOXEL_LENGTH * direction;
+    vec3 rate = VOXEL_RATE(direction);
     vec4 light = vec4(0.0, 0.0, 0.0, 1.0); // colour, transmittance
     if (stride > 1.0 && i < last) {
         // Equal steps from end to end.
@@ -89,8 +96,8 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
         last = longer;
     }
     float t = max(start, tNear + i * dt);
-    vec3 place = placeOf(origin + t * direction);
-    beginCut(origin + t * direction);
+    vec3 place = placeOnRay(origin, direction, t);
+    beginCut(cutPoint(origin, direction, t));
     float entry = tableEntry(place);
     vec4 integral = tableIntegral(entry);
     float depth = min(stop, tNear + (i + 1.0) * dt) - t; // of the first step, which may be cut
@@ -113,7 +120,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
     float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
 #ifdef SKIPPING
-    brick = occupiedPart(origin, direction, max(tNear, brick.x), min(tFar, brick.y));
+    brick = occupiedPart(VOXEL_RAY(origin, direction), max(tNear, brick.x), min(tFar, brick.y));
 #endif
     float perDepth = count / (tFar - tNear);
     float i = max(0.0, ceil((brick.x - tNear) * perDepth - 0.5));
@@ -126,17 +133,20 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
         i = 0.0;
         last = longer;
     }
-    vec3 rate = VOXEL_LENGTH * direction * dt;
+    vec3 rate = VOXEL_RATE(direction) * dt;
     float units = dt * length(frameToUnits * direction);
     vec3 color = vec3(0.0);
     float transmittance = 1.0;
     float t = tNear + (i + 0.5) * dt;
-    vec3 place = placeOf(origin + t * direction);
+    vec3 place = placeOnRay(origin, direction, t);
     int steps = int(last - i);
-    beginCut(origin + (t - 0.5 * dt) * direction);
+    beginCut(cutPoint(origin, direction, t - 0.5 * dt));
     if (steps > 0) do {
         vec4 c = classify(place);
-        c.a *= keptUntil(origin + (t + 0.5 * dt) * direction);
+        c.a *= keptUntil(cutPoint(origin, direction, t + 0.5 * dt));
+#ifdef VERTEX_COLORS
+        c *= colorOnRay(t);
+#endif
 #ifdef SHADING
         c = lit(c, place, t);
 #endif

@@ -1,5 +1,9 @@
 // The highest or lowest value, by BETTER; where nothing is kept it is WORST.
 
+#define EMPTY_RAY vec4(WORST)
+#define JOIN_RAY(front, behind) BETTER(front, behind)
+#define RAY_DONE(light) false
+
 #if defined(SLAB)
 #ifdef RGBA
 // Highest or lowest premultiplied components on the brick's part of the segment, ends included.
@@ -8,13 +12,13 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     tNear = max(tNear, brick.x);
     tFar = min(tFar, brick.y);
     float count = stepsOf(tNear, tFar);
-    vec3 place = placeOf(origin + direction * tNear);
-    vec3 rate = VOXEL_LENGTH * direction * ((tFar - tNear) / count);
+    vec3 place = placeOnRay(origin, direction, tNear);
+    vec3 rate = VOXEL_RATE(direction) * ((tFar - tNear) / count);
     float dt = (tFar - tNear) / count;
     vec4 best = vec4(WORST);
     for (int i = 0; i <= int(count); ++i) {
         vec4 texel = voxelAt(place);
-        if (isKept(origin + (tNear + float(i) * dt) * direction))
+        if (isKept(cutPoint(origin, direction, tNear + float(i) * dt)))
             best = BETTER(best, vec4(texel.rgb * texel.a, texel.a));
         COUNT_SAMPLE
         place += rate;
@@ -36,10 +40,11 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     tNear = max(tNear, brick.x);
     tFar = min(tFar, brick.y);
     float count = stepsOf(tNear, tFar);
-    vec3 start = placeOf(origin + direction * tNear);
-    vec3 rate = VOXEL_LENGTH * direction * ((tFar - tNear) / count);
+    vec3 start = placeOnRay(origin, direction, tNear);
+    vec3 rate = VOXEL_RATE(direction) * ((tFar - tNear) / count);
     vec3 place = start + rate;
-    vec3 first = origin + direction * tNear, pointRate = direction * ((tFar - tNear) / count);
+    vec3 first = cutPoint(origin, direction, tNear);
+    vec3 pointRate = (cutPoint(origin, direction, tFar) - first) / count;
     float best = valueAt(start, first), at = 0.0;
     int steps = int(count);
     for (int i = 1; i <= steps; ++i) {

@@ -1,5 +1,9 @@
 // The integral of the value along the ray, and of 1, in opacity units.
 
+#define EMPTY_RAY vec4(0.0)
+#define JOIN_RAY(front, behind) (front + behind)
+#define RAY_DONE(light) false
+
 #if defined(SLAB)
 // Integral of the value over the brick's steps, and of 1.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
@@ -7,12 +11,12 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
     float first = max(0.0, ceil((brick.x - tNear) / dt - 0.5));
     int steps = int(min(count, ceil((brick.y - tNear) / dt - 0.5)) - first);
-    vec3 place = placeOf(origin + direction * (tNear + (first + 0.5) * dt));
-    vec3 rate = VOXEL_LENGTH * direction * dt;
+    vec3 place = placeOnRay(origin, direction, tNear + (first + 0.5) * dt);
+    vec3 rate = VOXEL_RATE(direction) * dt;
     float sum = 0.0, keptSteps = 0.0;
-    beginCut(origin + direction * (tNear + first * dt));
+    beginCut(cutPoint(origin, direction, tNear + first * dt));
     for (int i = 0; i < steps; ++i) {
-        float kept = keptUntil(origin + direction * (tNear + (first + float(i) + 1.0) * dt));
+        float kept = keptUntil(cutPoint(origin, direction, tNear + (first + float(i) + 1.0) * dt));
         sum += kept * voxelAt(place);
         keptSteps += kept;
         COUNT_SAMPLE

@@ -1,5 +1,9 @@
 // The first place where the interpolated value crosses the iso-value, opaque. Slabs only.
 
+#define EMPTY_RAY vec4(0.0)
+#define JOIN_RAY(front, behind) (front + (1.0 - front.a) * behind)
+#define RAY_DONE(light) (light.a > 0.0)
+
 uniform float isoTexel;
 
 float overIso(vec3 place) { return voxelAt(place) - isoTexel; }
@@ -29,10 +33,10 @@ float crossing(vec3 origin, vec3 direction, float tNear, float tFar, vec2 part)
     tNear = max(tNear, part.x);
     tFar = min(tFar, part.y);
     float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
-    vec3 start = placeOf(origin + direction * tNear), rate = VOXEL_LENGTH * direction * dt;
+    vec3 start = placeOnRay(origin, direction, tNear), rate = VOXEL_RATE(direction) * dt;
     float i = 0.0, last = count;
 #ifdef SKIPPING
-    vec2 occupied = occupiedPart(origin, direction, tNear, tFar);
+    vec2 occupied = occupiedPart(VOXEL_RAY(origin, direction), tNear, tFar);
     i = max(i, floor((occupied.x - tNear) / dt));
     last = min(last, ceil((occupied.y - tNear) / dt));
 #endif
@@ -51,7 +55,7 @@ float crossing(vec3 origin, vec3 direction, float tNear, float tFar, vec2 part)
     if ((before < 0.0) == (after < 0.0)) return 1e30;
     float t = tNear + rootBetween(start, rate, i - 1.0, before, i, after) * dt;
 #ifdef CUT
-    if (!isKept(origin + t * direction)) { // on to the next one
+    if (!isKept(cutPoint(origin, direction, t))) { // on to the next one
         before = after;
         continue;
     }
@@ -66,7 +70,7 @@ vec3 colorAt(vec3 origin, vec3 direction, float t)
 {
     vec4 color = vec4(classifyTexel(isoTexel).rgb, 1.0);
 #ifdef SHADING
-    color = lit(color, placeOf(origin + t * direction), t);
+    color = lit(color, placeOnRay(origin, direction, t), t);
 #endif
 #ifdef PAINTED
     color.rgb = painted(color.rgb, origin + t * direction);
