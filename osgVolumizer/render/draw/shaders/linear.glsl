@@ -2,6 +2,8 @@
 // 1e-6. Emission is weighted by what it passes on its way out, integrated by parts; extinction and colour of each step
 // are parabolas through its ends and its middle, whose integrals Simpson's rule has exactly.
 
+#define EXACT_ENOUGH 1e-6 // what is let through
+
 // Extinction in bits per opacity unit.
 float extinctionOf(float opacity) { return -log2(max(1.0 - opacity, 5.9604645e-8)); }
 
@@ -16,7 +18,7 @@ float opacityOf(float bits)
 void addLinear(vec4 c0, vec4 c1, float units, inout vec4 light)
 {
     if (!(max(c0.a, c1.a) > 0.0)) return;
-    const float BITS = 0.5; // of extinction in a step: the rule is off by 1e-6 then
+    const float BITS = 0.35; // of extinction in a step: the rule is off by 1e-6 then
     float rise = max(c1.a - c0.a, 0.0), turn = max(abs(c1.a - c0.a), 1e-30);
     float at = 0.0, e0 = extinctionOf(c0.a);
     vec3 color0 = c0.rgb;
@@ -40,12 +42,13 @@ void addLinear(vec4 c0, vec4 c1, float units, inout vec4 light)
         e0 = e2;
         color0 = next.rgb;
         COUNT_SAMPLE
-        if (last || light.a <= OPAQUE_ENOUGH) break;
+        if (last || light.a <= EXACT_ENOUGH) break;
     }
 }
 
 #ifdef SCALARS
 // The points of the lookup table: colour and opacity, then the fraction of the range where; first and last far away.
+uniform samplerBuffer lookupTable;
 uniform int lastPoint;
 int point = -1; // the last one that is not beyond the scalar
 float pointLow, pointHigh;
@@ -92,7 +95,11 @@ vec4 pointColor(float scalar)
 void addScalars(float from, float to, float units, inout vec4 light)
 {
     findPoint(from);
-    if (from == to) return addLinear(colorBetweenPoints(from), colorBetweenPoints(from), units, light);
+    if (from == to) {
+        vec4 same = colorBetweenPoints(from);
+        addLinear(same, same, units, light);
+        return;
+    }
     bool up = to > from;
     float at = from, perUnit = units / abs(to - from);
     for (int i = 0; i < 65536; ++i) {
@@ -100,7 +107,7 @@ void addScalars(float from, float to, float units, inout vec4 light)
         bool last = up ? to <= bound : to >= bound;
         float next = last ? to : bound;
         if (next != at) addLinear(colorBetweenPoints(at), colorBetweenPoints(next), abs(next - at) * perUnit, light);
-        if (last || light.a <= OPAQUE_ENOUGH) break;
+        if (last || light.a <= EXACT_ENOUGH) break;
         at = next;
         takePoint(clamp(point + (up ? 1 : -1), 0, lastPoint - 1));
     }

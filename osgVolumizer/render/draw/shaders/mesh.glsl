@@ -31,6 +31,12 @@ vec4 inScene(vec4 light, float t)
 }
 #endif
 
+#ifdef EXACT_CELLS
+#define ENOUGH(light) (light.a >= 1.0 - EXACT_ENOUGH)
+#else
+#define ENOUGH(light) RAY_DONE(light)
+#endif
+
 // Of the tetrahedron that is walked through, between two depths.
 vec4 lightOfPart(float tNear, float tFar)
 {
@@ -75,7 +81,7 @@ vec4 light(float tNear, float tFar)
     for (;;) {
         float begin = max(partBegin, tNear), end = min(left.depth, tFar);
         if (hasPart && begin < end) sum = JOIN_RAY(sum, lightOfPart(begin, end));
-        if (left.depth >= tFar || RAY_DONE(sum) || !nextPart()) break;
+        if (left.depth >= tFar || ENOUGH(sum) || !nextPart()) break;
     }
     return sum;
 }
