@@ -1,4 +1,5 @@
-// A volume of tetrahedra, or a brick of it, that is marched by itself: tetrahedron by tetrahedron.
+// A volume of tetrahedra, or a brick of it, that is marched by itself: tetrahedron by tetrahedron. Parts of the ray come near
+// to far, so the walk goes on where it was. No loop in that over tetrahedra but marches: see member.glsl.
 
 vec3 origin, direction; // the pixel's ray
 vec2 region;            // the part of it in the volume's region, in t
@@ -16,6 +17,11 @@ void findPart(float tNear, float tFar, inout vec2 all)
 }
 
 #ifdef EXACT_CELLS
+float at = -1e30; // depth that light is known up to
+#ifdef SCALARS
+float scalarAt;
+#endif
+
 // Light with that of the scene, and fog, about one depth.
 vec4 inScene(vec4 light, float t)
 {
@@ -29,35 +35,108 @@ vec4 inScene(vec4 light, float t)
     return light;
 #endif
 }
-#endif
 
-#ifdef EXACT_CELLS
-#define ENOUGH(light) (light.a >= 1.0 - EXACT_ENOUGH)
+// On to the next piece: into the next tetrahedron, and to where the part of the ray begins.
+void goOn(float tNear, out float rate)
+{
+    if (at >= left.depth) {
+        crossTetrahedron();
+        at = hasPart ? entered.depth : left.depth;
+#ifdef SCALARS
+        scalarAt = entered.scalar;
+#endif
+    }
+    float skipped = clamp(max(tNear, partBegin), at, left.depth) - at;
+    rate = 1.0 / max(left.depth - entered.depth, 1e-30);
+#ifdef SCALARS
+    rate *= left.scalar - entered.scalar;
+    scalarAt += skipped * rate;
+#endif
+    at += skipped;
+}
+
+// The piece that begins where light is known up to: its end, and colour and opacity at both.
+#ifdef SCALARS
+void findPiece(float tFar, float rate, out float next, out float scalarNext, out vec4 c0, out vec4 c1)
+{
+    next = min(left.depth, tFar);
+    scalarNext = next < left.depth ? scalarAt + (next - at) * rate : left.scalar;
+    bool up = scalarNext >= scalarAt;
+    bool higher = up ? scalarAt >= pointHigh : scalarAt > pointHigh;
+    bool lower = up ? scalarAt < pointLow : scalarAt <= pointLow;
+    movePoint(higher, lower);
+    // Further points come one by one.
+    bool here = up ? scalarAt >= pointLow && scalarAt < pointHigh : scalarAt > pointLow && scalarAt <= pointHigh;
+    float bound = up ? pointHigh : pointLow;
+    if (!here || (up ? scalarNext > bound : scalarNext < bound)) {
+        bound = here ? bound : scalarAt;
+        next = clamp(at + (bound - scalarAt) / rate, at, next);
+        scalarNext = bound;
+    }
+    c0 = colorBetweenPoints(scalarAt);
+    c1 = colorBetweenPoints(scalarNext);
+}
 #else
-#define ENOUGH(light) RAY_DONE(light)
+void findPiece(float tFar, float rate, out float next, out vec4 c0, out vec4 c1)
+{
+    next = min(left.depth, tFar);
+    c0 = mix(entered.color, left.color, (at - entered.depth) * rate);
+    c1 = mix(entered.color, left.color, (next - entered.depth) * rate);
+}
 #endif
 
+vec4 light(float tNear, float tFar)
+{
+    tNear = max(tNear, region.x);
+    tFar = min(tFar, region.y);
+    vec3 color = vec3(0.0);
+    float through = 1.0, unitsPerDepth = length(frameToUnits * direction);
+    bool more = tNear < tFar, inMesh;
+    if (more) do {
+        if (at >= left.depth && tetrahedron < 0) {
+            more = enterMesh();
+            at = left.depth;
+#ifdef SCALARS
+            if (more) findPoint(left.scalar);
+#endif
+        }
+        if (more) do {
+            float rate, next, share;
+            vec4 c0, c1;
+            goOn(tNear, rate);
+#ifdef SCALARS
+            float scalarNext;
+            findPiece(tFar, rate, next, scalarNext, c0, c1);
+#else
+            findPiece(tFar, rate, next, c0, c1);
+#endif
+            float units = max(next - at, 0.0) * unitsPerDepth;
+            units *= keptAbout(origin, direction, 0.5 * (at + next), next - at);
+            vec4 piece = inScene(linearLight(c0, c1, hasPart ? units : 0.0, share), 0.5 * (at + next));
+            color += through * piece.rgb;
+            through *= 1.0 - piece.a;
+            at = share < 1.0 ? at + share * (next - at) : next;
+#ifdef SCALARS
+            scalarAt = share < 1.0 ? mix(scalarAt, scalarNext, share) : scalarNext;
+#endif
+            COUNT_SAMPLE
+            more = at < tFar && through > EXACT_ENOUGH && walked < mostTetrahedra;
+            inMesh = at < left.depth || tetrahedron >= 0;
+        } while (more && inMesh);
+    } while (more);
+    return vec4(color, 1.0 - through);
+}
+
+#else
 // Of the tetrahedron that is walked through, between two depths.
 vec4 lightOfPart(float tNear, float tFar)
 {
-    float length1 = max(left.depth - entered.depth, 1e-30);
-#ifdef EXACT_CELLS
-    vec2 f = (vec2(tNear, tFar) - entered.depth) / length1;
-    float units = (tFar - tNear) * length(frameToUnits * direction);
-    units *= keptAbout(origin, direction, 0.5 * (tNear + tFar), tFar - tNear);
-    vec4 sum = vec4(0.0, 0.0, 0.0, 1.0);
-#ifdef SCALARS
-    addScalars(mix(entered.scalar, left.scalar, f.x), mix(entered.scalar, left.scalar, f.y), units, sum);
-#else
-    addLinear(mix(entered.color, left.color, f.x), mix(entered.color, left.color, f.y), units, sum);
-#endif
-    return inScene(vec4(sum.rgb, 1.0 - sum.a), 0.5 * (tNear + tFar));
-#else
+    float perDepth = 1.0 / max(left.depth - entered.depth, 1e-30);
 #ifdef PLACES
-    rayVoxelRate = (left.place - entered.place) / length1;
+    rayVoxelRate = (left.place - entered.place) * perDepth;
     rayVoxelOrigin = entered.place - entered.depth * rayVoxelRate;
 #elif defined(SCALARS)
-    rayVoxelRate = vec3((left.scalar - entered.scalar) / length1, 0.0, 0.0);
+    rayVoxelRate = vec3((left.scalar - entered.scalar) * perDepth, 0.0, 0.0);
     rayVoxelOrigin = vec3(entered.scalar, 0.0, 0.0) - entered.depth * rayVoxelRate;
 #endif
 #ifdef VOXELS
@@ -67,21 +146,29 @@ vec4 lightOfPart(float tNear, float tFar)
     vec2 shown = vec2(tNear, tFar);
 #endif
     return march(origin, direction, tNear, tFar, shown);
-#endif
 }
 
-// Light of a part of the ray, front to back, or what the ray function gathers of it. Parts come near to far, so the walk
-// goes on where it was.
+// What the ray function makes of a part of the ray, front to back.
 vec4 light(float tNear, float tFar)
 {
     tNear = max(tNear, region.x);
     tFar = min(tFar, region.y);
     vec4 sum = EMPTY_RAY;
-    if (!(tNear < tFar)) return sum;
-    for (;;) {
-        float begin = max(partBegin, tNear), end = min(left.depth, tFar);
-        if (hasPart && begin < end) sum = JOIN_RAY(sum, lightOfPart(begin, end));
-        if (left.depth >= tFar || ENOUGH(sum) || !nextPart()) break;
-    }
+    bool more = tNear < tFar, on;
+    if (more) do {
+        do {
+            float begin = max(partBegin, tNear), end = min(left.depth, tFar);
+            if (hasPart && begin < end) sum = JOIN_RAY(sum, lightOfPart(begin, end));
+            more = left.depth < tFar && !RAY_DONE(sum) && walked < mostTetrahedra;
+            on = more && tetrahedron >= 0;
+#ifdef WHOLE_RUNS
+            if (on) crossMesh();
+#else
+            if (on) crossTetrahedron();
+#endif
+        } while (on);
+        if (more) more = enterMesh();
+    } while (more);
     return sum;
 }
+#endif

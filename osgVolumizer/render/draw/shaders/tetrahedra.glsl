@@ -71,7 +71,7 @@ Known inFace(Corner a, Corner b, Corner c)
 {
     vec3 w = max(vec3(crossed(b.across, c.across), crossed(c.across, a.across), crossed(a.across, b.across)), 0.0);
     float sum = w.x + w.y + w.z;
-    w = sum > 0.0 ? w / sum : vec3(1.0 / 3.0);
+    w = sum > 0.0 ? w * (1.0 / sum) : vec3(1.0 / 3.0);
     Known k;
 #define MEET(field) k.field = w.x * a.known.field + w.y * b.known.field + w.z * c.known.field
     MEET(depth);
@@ -182,6 +182,7 @@ bool enterMesh()
     corner2 = cornerOf(word(at + 1));
     tetrahedron = int(word(at + 3));
     left = inFace(corner0, corner1, corner2);
+    hasPart = false;
     return true;
 }
 
@@ -219,10 +220,6 @@ void crossTetrahedron()
 #endif
     float side0 = crossed(corner0.across, apex.across), side1 = crossed(corner1.across, apex.across),
           side2 = crossed(corner2.across, apex.across);
-#if defined(SCALARS) && !defined(CELL_SCALARS)
-    float most = max(max(abs(corner0.known.scalar), abs(corner1.known.scalar)),
-                     max(abs(corner2.known.scalar), abs(apex.known.scalar)));
-#endif
     uint dropped;
     if (side0 >= 0.0 && side2 <= 0.0) {
         dropped = corner1.vertex;
@@ -237,36 +234,29 @@ void crossTetrahedron()
     int rank = int(dropped > corner0.vertex) + int(dropped > corner1.vertex) + int(dropped > corner2.vertex);
     entered = left;
     left = inFace(corner0, corner1, corner2);
+    partBegin = max(entered.depth, walkedUntil);
+    hasPart = left.depth > partBegin;
 #ifdef CELL_SCALARS
-    float scalar = texelFetch(tetraScalars, tetrahedron).r;
-    entered.scalar = left.scalar = scalar;
-    hasPart = left.depth > max(entered.depth, walkedUntil) && scalar < 1e38;
-#elif defined(SCALARS)
-    hasPart = left.depth > max(entered.depth, walkedUntil) && most < 1e38;
-#else
-    hasPart = left.depth > max(entered.depth, walkedUntil);
+    entered.scalar = left.scalar = texelFetch(tetraScalars, tetrahedron).r;
+#endif
+#ifdef SCALARS
+    // One of the two has a part in each corner.
+    hasPart = hasPart && max(entered.scalar, left.scalar) < 1e31;
 #endif
     walkedUntil = max(walkedUntil, left.depth);
     tetrahedron = int(word(at + 1 + rank)); // -1 outside
     ++walked;
 }
 
-// The next part of the ray in the mesh; false where there is none.
-bool nextPart()
-{
-    if (walked >= mostTetrahedra || (tetrahedron < 0 && !enterMesh())) {
-        hasPart = false;
-        return false;
-    }
-    float done = walkedUntil;
 #ifdef WHOLE_RUNS
+// All that lies between outer faces.
+void crossMesh()
+{
     Known first = left;
+    float begin = max(first.depth, walkedUntil);
     do crossTetrahedron(); while (tetrahedron >= 0 && walked < mostTetrahedra);
     entered = first;
-    hasPart = left.depth > max(first.depth, done);
-#else
-    crossTetrahedron();
-#endif
-    partBegin = max(entered.depth, done);
-    return true;
+    partBegin = begin;
+    hasPart = left.depth > begin;
 }
+#endif
