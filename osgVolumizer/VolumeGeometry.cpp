@@ -203,20 +203,22 @@ unsigned VolumeGeometry::getModifiedCount() const
 
 ReportedStatus VolumeGeometry::setScalars(std::vector<float> scalars, ScalarBinding binding)
 {
-    std::lock_guard<std::mutex> lock(_private->mutex);
-    if (!_private->fits(scalars, binding))
-        return reported(
-            {ErrorCode::SIZE_MISMATCH,
-             "VolumeGeometry \"" + getName() + "\": " + std::to_string(scalars.size()) +
-                 " scalars for " +
-                 (binding == PER_VERTEX
-                      ? std::to_string(_private->tetraSet->vertices.size()) + " vertices"
-                      : std::to_string(_private->tetraSet->tetraCount()) + " tetrahedra")});
-    if (_private->automaticRange) _private->range = rangeOf(scalars);
-    _private->scalars = std::make_shared<const std::vector<float>>(std::move(scalars));
-    _private->binding = binding;
-    ++_private->scalarCount;
-    return {};
+    const std::size_t count = scalars.size();
+    std::unique_lock<std::mutex> lock(_private->mutex);
+    if (_private->fits(scalars, binding)) {
+        if (_private->automaticRange) _private->range = rangeOf(scalars);
+        _private->scalars = std::make_shared<const std::vector<float>>(std::move(scalars));
+        _private->binding = binding;
+        ++_private->scalarCount;
+        return {};
+    }
+    const TetraSetPtr set = _private->tetraSet;
+    lock.unlock(); // an error handler may ask for anything
+    return reported(
+        {ErrorCode::SIZE_MISMATCH,
+         "VolumeGeometry \"" + getName() + "\": " + std::to_string(count) + " scalars for " +
+             (binding == PER_VERTEX ? std::to_string(set->vertices.size()) + " vertices"
+                                    : std::to_string(set->tetraCount()) + " tetrahedra")});
 }
 
 void VolumeGeometry::removeScalars()

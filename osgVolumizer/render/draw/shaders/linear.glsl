@@ -18,12 +18,12 @@ float opacityOf(float bits)
 // the piece that was taken.
 vec4 linearLight(vec4 c0, vec4 c1, float units, out float share)
 {
-    const float BITS = 0.35; // of extinction in a step: the rule is off by 1e-6 then
+    const float BITS = 0.2; // of extinction in a step: the rule is off by 1e-6 then
     float here = extinctionOf(c0.a), end = extinctionOf(c1.a), turn = max(abs(c1.a - c0.a), 1e-30);
     // So long that extinction comes to BITS, and that -log2(1 - opacity) is near a parabola.
     float bits = units * here, slope = max(units * end - bits, 0.0);
     share = 2.0 * BITS / max(bits + sqrt(bits * bits + 2.0 * BITS * slope), 1e-30);
-    share = min(share, max(0.25 * (1.0 - c0.a) / turn, 0.03125));
+    share = min(share, max(0.15 * (1.0 - c0.a) / turn, 0.03125));
     share = share > 0.999 ? 1.0 : share;
     c1 = mix(c0, c1, share);
     float middle = extinctionOf(0.5 * (c0.a + c1.a));
