@@ -5,6 +5,8 @@
 
 #include <vtkCellType.h>
 
+#include <cstdio>
+
 #include <strings.h>
 
 namespace osgVolumizer {
@@ -39,6 +41,16 @@ bool isBinary(const std::string& content)
 {
     const std::size_t line = nextLine(content, nextLine(content, 0));
     return strncasecmp(content.c_str() + line, "binary", 6) == 0;
+}
+
+// As VTK reads it, which decides by it what to expect.
+bool isVersion5(const std::string& content)
+{
+    constexpr std::size_t PREFIX = 23; // "# vtk DataFile Version "
+    int major = 0, minor = 0;
+    const std::string line = content.substr(0, content.find('\n'));
+    return line.size() > PREFIX &&
+           std::sscanf(line.c_str() + PREFIX, "%d.%d", &major, &minor) == 2 && major >= 5;
 }
 
 /// Where the numbers of a file's cells are: of each its size and its points, or (version 5) where
@@ -126,25 +138,52 @@ int bytesOf(const Layout& layout, std::size_t at)
     return line.find("64") != NOWHERE || line.find("long") != NOWHERE ? 8 : 4;
 }
 
-// Version 5, of which VTK checks all but the polyhedra.
-void findOffsets(Layout& layout, std::size_t offsets)
+// Version 5.
+Status checkOffsets(Layout& layout, std::size_t offsets)
 {
     layout.offsets = true;
     layout.sizeBytes = bytesOf(layout, offsets);
     layout.sizesAt = nextLine(layout.content, offsets);
-    LegacyNumbers numbers(layout.content, layout.sizesAt, layout.sizeBytes);
-    numbers.skip(layout.cells);
-    const std::size_t points = behind(layout.content, "CONNECTIVITY", numbers.place() - 1);
-    layout.pointBytes = points == NOWHERE ? 0 : bytesOf(layout, points);
+    LegacyNumbers next(layout.content, layout.sizesAt, layout.sizeBytes);
+    std::int64_t last = 0, offset = 0;
+    for (std::int64_t c = 0; c < layout.cells; ++c, last = offset)
+        if (!next(offset) || offset < last || (c == 0 && offset != 0))
+            return damaged("has no offset " + std::to_string(c) + " of " +
+                           std::to_string(layout.cells) + " that follows the others");
+    if (last != layout.size)
+        return damaged("has offsets up to " + std::to_string(last) + " of " +
+                       std::to_string(layout.size));
+    const std::size_t points = behind(layout.content, "CONNECTIVITY", next.place() - 1);
+    if (points == NOWHERE) return damaged("has no CONNECTIVITY");
+    layout.pointBytes = bytesOf(layout, points);
     layout.pointsAt = nextLine(layout.content, points);
-    layout.end = layout.pointsAt;
-    --layout.cells; // there is an offset more
+    LegacyNumbers connectivity(layout.content, layout.pointsAt, layout.pointBytes);
+    if (!connectivity.skip(layout.size)) return damaged("has too few points in CONNECTIVITY");
+    layout.end = connectivity.place();
+    if (layout.cells > 0) --layout.cells; // there is an offset more
+    return {};
+}
+
+// Every number in the file takes a byte at least.
+Status checkCounts(const std::string& content)
+{
+    for (const char* section : {"POINTS", "CELL_TYPES", "POINT_DATA", "CELL_DATA"}) {
+        const std::size_t at = behind(content, section, 0);
+        std::int64_t count = 0;
+        if (at == NOWHERE || !LegacyNumbers(content, at, 0)(count)) continue;
+        if (count < 0 || static_cast<std::uint64_t>(count) > content.size())
+            return {ErrorCode::FILE_UNREADABLE, std::string("section ") + section +
+                                                    " cannot have " + std::to_string(count) +
+                                                    " entries"};
+    }
+    return {};
 }
 
 } // namespace
 
 Status checkLegacyCells(const std::string& content)
 {
+    if (Status counts = checkCounts(content); !counts) return counts;
     const std::size_t at = behind(content, "CELLS", 0);
     if (at == NOWHERE) return {}; // VTK has words for that
     Layout layout{content};
@@ -155,11 +194,10 @@ Status checkLegacyCells(const std::string& content)
     layout.sizesAt = nextLine(content, at);
     if (layout.sizesAt >= content.size()) return damaged("is empty");
     layout.sizeBytes = layout.binary ? 4 : 0;
-    if (strncasecmp(content.c_str() + layout.sizesAt, "OFFSETS", 7) == 0)
-        findOffsets(layout, layout.sizesAt);
-    else if (Status sizes = checkSizes(layout); !sizes)
-        return sizes;
-    return checkPolyhedra(layout);
+    const bool offsets = strncasecmp(content.c_str() + layout.sizesAt, "OFFSETS", 7) == 0;
+    if (offsets != isVersion5(content)) return damaged("is not what the file's version has");
+    const Status status = offsets ? checkOffsets(layout, layout.sizesAt) : checkSizes(layout);
+    return status.ok() ? checkPolyhedra(layout) : status;
 }
 
 } // namespace vtk

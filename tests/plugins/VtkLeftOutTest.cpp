@@ -274,6 +274,11 @@ TEST_F(VtkLeftOut, FacesOfLegacyPolyhedraEndWhereTheyShould)
         expectRefused(head + "cells 1 32\n31 " + bad + tail, "do not end with cell 0", "a.vtk");
         expectRefused(newHead + newCells(bad, 31) + tail, "do not end with cell 0", "a.vtk");
     }
+    const std::string good = newHead + newCells(CUBE, 31) + tail;
+    expectRefused(head + newCells(CUBE, 31) + tail, "not what the file's version has", "a.vtk");
+    expectRefused(replaced(good, "\n0 31", "\n98 31"), "no offset 0 of 2", "a.vtk");
+    expectRefused(replaced(good, "\n0 31", "\n031"), "no offset 0 of 2", "a.vtk");
+    expectRefused(replaced(good, "\n0 31", "\n0 30"), "offsets up to 30 of 31", "a.vtk");
 }
 
 } // namespace VtkLeftOutTest

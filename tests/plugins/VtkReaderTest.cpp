@@ -269,6 +269,10 @@ TEST(VtkReader, BadFilesAreRefusedInASentence)
         {replaced(good, "\n12\n14\n13\n11\n10\n5\n", "\n1\n2\n3\n200\n55\n5\n"),
          "no cells to show, but 4 points, lines or faces, 2 of unknown kinds"},
         {legacy(""), "no arrays of numbers"},
+        {replaced(good, "POINTS 20", "POINTS -2"), "section POINTS cannot have -2"},
+        {replaced(good, "POINT_DATA 20", "POINT_DATA 99999999999"), "section POINT_DATA"},
+        {replaced(good, "CELL_TYPES 6", "CELL_TYPES -6"), "section CELL_TYPES"},
+        {replaced(good, "Version 3.0", "Version 5.0"), "not what the file's version has"},
         {good.substr(0, good.find("CELL_TYPES")), ""},
         {good.substr(0, good.find("CELLS") + 20), ""},
         {good.substr(0, good.find("POINTS") + 30), ""}};
