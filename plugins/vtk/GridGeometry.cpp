@@ -8,9 +8,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace osgVolumizer {
 namespace vtk {
+
+namespace {
+
+// What no cell uses, or only cells that are left out, is often some mark of missing values.
+void forgetUnused(const std::vector<core::TetraSet::Index>& indices, std::vector<float>& scalars)
+{
+    std::vector<bool> used(scalars.size(), false);
+    for (const core::TetraSet::Index i : indices)
+        used[i] = true;
+    for (std::size_t i = 0; i < scalars.size(); ++i)
+        if (!used[i]) scalars[i] = std::numeric_limits<float>::quiet_NaN();
+}
+
+} // namespace
 
 Result<GridGeometry> convertGrid(vtkUnstructuredGrid& grid, const std::string& arrayName,
                                  std::optional<int> channel)
@@ -37,6 +52,7 @@ Result<GridGeometry> convertGrid(vtkUnstructuredGrid& grid, const std::string& a
                       "there are no cells to show" + (left.empty() ? "" : ", but " + left));
     }
     geometry.scalars = values->ofCells() ? cells.takeScalars() : vertices.takeScalars();
+    if (!values->ofCells() && !values->isColor()) forgetUnused(set.indices, geometry.scalars);
     set.vertices = vertices.takeVertices();
     if (const Status status = set.validate(); !status) return status;
     // Two samples across a tetrahedron of mean volume, and no more than 1000 along the whole.

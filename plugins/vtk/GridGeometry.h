@@ -18,7 +18,7 @@ namespace vtk {
 struct GridGeometry
 {
     core::TetraSet tetras;
-    std::vector<float> scalars;  ///< empty: colours
+    std::vector<float> scalars;  ///< empty: colours; of vertices that no tetrahedron has: NaN
     bool perTetrahedron = false; ///< else one scalar per vertex
     std::string name;            ///< of the array
     std::string notice;          ///< of what is shown of it, to be told; often empty
