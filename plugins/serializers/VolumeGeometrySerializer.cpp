@@ -8,6 +8,7 @@ namespace {
 
 const char* const layoutNames[] = {"V3F",         "T3F_V3F",     "C3F_V3F", "C4F_V3F",
                                    "T3F_C3F_V3F", "T3F_C4F_V3F", "USER"};
+const char* const bindingNames[] = {"PER_VERTEX", "PER_TETRAHEDRON"};
 
 Status readFormat(const Record& record, core::VertexFormat& format)
 {
@@ -31,6 +32,43 @@ Status readFormat(const Record& record, core::VertexFormat& format)
     return Status();
 }
 
+// Fields ScalarBinding and Scalars are there where the geometry has any, ScalarRange unless that is
+// automatic. They came after version 7, which they did not change: to a reader that does not know
+// them, the tetrahedra are what they were.
+Status applyScalars(Record& record, VolumeGeometry& geometry)
+{
+    if (!record.has("Scalars")) {
+        for (const char* name : {"ScalarBinding", "ScalarRange"})
+            if (record.has(name))
+                return Status(ErrorCode::FILE_UNREADABLE,
+                              std::string("field Scalars is missing, but there is ") + name);
+        return Status();
+    }
+    int binding = 0;
+    Status status = record.getChoice("ScalarBinding", bindingNames, 2, binding);
+    Field::Doubles values, range;
+    if (status.ok()) status = record.take("Scalars", values);
+    if (status.ok() && record.has("ScalarRange")) status = record.get("ScalarRange", 2, range);
+    if (!status.ok()) return status;
+    if (!range.empty()) {
+        status = geometry.setScalarRange(osg::Vec2d(range[0], range[1]));
+        if (!status.ok()) return status;
+    }
+    return geometry.setScalars(std::vector<float>(values.begin(), values.end()),
+                               static_cast<VolumeGeometry::ScalarBinding>(binding));
+}
+
+void fillScalars(const VolumeGeometry& geometry, Record& record)
+{
+    const VolumeGeometry::ScalarsPtr scalars = geometry.getScalars();
+    if (!scalars) return;
+    record.add("ScalarBinding", std::string(bindingNames[geometry.getScalarBinding()]));
+    record.add("Scalars", Field::Doubles(scalars->begin(), scalars->end()));
+    if (geometry.isScalarRangeAutomatic()) return;
+    const osg::Vec2d range = geometry.getScalarRange();
+    record.add("ScalarRange", Field::Doubles{range.x(), range.y()});
+}
+
 Status applyTetraSet(Record& record, const osgDB::Options*, VolumeGeometry& geometry)
 {
     core::VertexFormat format;
@@ -50,7 +88,8 @@ Status applyTetraSet(Record& record, const osgDB::Options*, VolumeGeometry& geom
     Field::Doubles slackAngle{0.0}; // since version 4, and only where it is not 0
     if (status.ok() && record.has("SlackAngle")) status = record.get("SlackAngle", 1, slackAngle);
     if (status.ok()) status = geometry.setSlackAngle(slackAngle[0]);
-    return status.ok() ? geometry.setTetraSet(std::move(set)) : status;
+    if (status.ok()) status = geometry.setTetraSet(std::move(set));
+    return status.ok() ? applyScalars(record, geometry) : status;
 }
 
 void fillTetraSet(const VolumeGeometry& geometry, Record& record, const osgDB::OutputStream&)
@@ -65,6 +104,7 @@ void fillTetraSet(const VolumeGeometry& geometry, Record& record, const osgDB::O
     record.add("Tetrahedra", Field::Indices(set->indices), 4);
     if (geometry.getSlackAngle() != 0.0)
         record.add("SlackAngle", Field::Doubles{geometry.getSlackAngle()});
+    fillScalars(geometry, record);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "GridFile.h"
 
+#include "CheckedGridReader.h"
 #include "ErrorKeeper.h"
 #include "LegacyCells.h"
 
@@ -10,7 +11,6 @@
 #include <vtkExecutive.h>
 #include <vtkNew.h>
 #include <vtkUnstructuredGridReader.h>
-#include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
 #include <exception>
@@ -30,7 +30,7 @@ Status unreadable(const std::string& path, const std::string& why)
 // Step `step` of those that a file may have.
 Result<GridFile> readXml(const std::string& path, int step, ErrorKeeper& errors)
 {
-    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    vtkNew<CheckedGridReader> reader;
     errors.watch(*reader);
     errors.watch(*reader->GetExecutive());
     reader->SetReaderErrorObserver(errors.command());
@@ -57,6 +57,14 @@ Result<GridFile> readLegacy(const std::string& path, ErrorKeeper& errors)
     reader->SetFileName(path.c_str());
     if (!reader->IsFileUnstructuredGrid())
         return unreadable(path, "not a VTK file with DATASET UNSTRUCTURED_GRID");
+    // Else the first of each kind, and the others not at all.
+    reader->ReadAllScalarsOn();
+    reader->ReadAllVectorsOn();
+    reader->ReadAllNormalsOn();
+    reader->ReadAllTensorsOn();
+    reader->ReadAllColorScalarsOn();
+    reader->ReadAllTCoordsOn();
+    reader->ReadAllFieldsOn();
     std::ifstream stream(path, std::ios::binary);
     std::stringstream content;
     content << stream.rdbuf();

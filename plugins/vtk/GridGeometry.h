@@ -1,35 +1,42 @@
 #pragma once
 
+#include "CellTally.h"
+
 #include <osgVolumizer/core/Status.h>
 #include <osgVolumizer/core/geometry/TetraSet.h>
 
-#include <osg/Vec2d>
-
+#include <optional>
 #include <string>
+#include <vector>
 
 class vtkUnstructuredGrid;
 
 namespace osgVolumizer {
 namespace vtk {
 
-/// What a grid holds, as tetrahedra. Point colours are carried as C4F. Point scalars become voxel
-/// coordinates (T3F) in a row of samples that hold the values of `range` evenly spread, so that
-/// interpolation, lookup table and everything else work on them as on any volume.
+/// What a grid holds, as tetrahedra: colours of points as C4F, or scalars.
 struct GridGeometry
 {
     core::TetraSet tetras;
-    bool scalars = false;
-    std::string name;                    ///< of the array
-    osg::Vec2d range{0.0, 1.0};          ///< of the scalars
-    double spacing = 1.0;                ///< object units between samples that the cells call for
-    static constexpr int SAMPLES = 1024; ///< between the ends of the range
+    std::vector<float> scalars;  ///< empty: colours; of vertices that no tetrahedron has: NaN
+    bool perTetrahedron = false; ///< else one scalar per vertex
+    std::string name;            ///< of the array
+    std::string notice;          ///< of what is shown of it, to be told; often empty
+    CellTally leftOut;
+    double spacing = 1.0; ///< object units between samples that the cells call for
 };
 
-/// Takes tetrahedra, pyramids, wedges, hexahedra and voxels; what has no volume is left out.
-/// \param arrayName of the point array to show; empty: the active scalars, else the only array
-/// VALUE_INVALID where there are cells of other kinds, no such array, or values that are not
-/// finite; INDEX_OUT_OF_RANGE with the cell. Messages do not name the file.
-Result<GridGeometry> convertGrid(vtkUnstructuredGrid& grid, const std::string& arrayName);
+/// Takes linear, quadratic, Lagrange and Bezier tetrahedra, pyramids, wedges and hexahedra, prisms,
+/// polyhedra and convex sets of points. Curved cells are cut between their nodes (CellLattice.h);
+/// in each tetrahedron the scalar is linear, so that the picture is exact for what linear cells
+/// hold on tetrahedra, and elsewhere of second order in the distance of nodes: for a quadratic cell
+/// of size h, in h/2. Cells of other kinds, without a volume, hidden, or with a value that is not
+/// finite, are left out, and counted.
+/// \param arrayName, channel: see GridValues::of()
+/// VALUE_INVALID where nothing is left, or there is no such array; INDEX_OUT_OF_RANGE and
+/// SIZE_MISMATCH with the cell; TOO_LARGE. Messages do not name the file.
+Result<GridGeometry> convertGrid(vtkUnstructuredGrid& grid, const std::string& arrayName,
+                                 std::optional<int> channel = {});
 
 } // namespace vtk
 } // namespace osgVolumizer

@@ -36,7 +36,7 @@ struct Said
 {
     std::string table, scalars, dataset;
     double unit = 0.0; ///< 0: not said
-    std::optional<int> step;
+    std::optional<int> step, channel;
 };
 
 Result<Said> parseOptions(const osgDB::Options* options)
@@ -57,45 +57,35 @@ Result<Said> parseOptions(const osgDB::Options* options)
                 !std::isfinite(said.unit))
                 return bad();
         }
-        if (option.name == "step") {
-            std::int64_t step = 0;
-            if (!core::parseInteger(value, step) || step < 0 ||
-                step > std::numeric_limits<int>::max())
+        if (option.name == "step" || option.name == "channel") {
+            std::int64_t number = 0;
+            if (!core::parseInteger(value, number) || number < 0 ||
+                number > std::numeric_limits<int>::max())
                 return bad();
-            said.step = static_cast<int>(step);
+            (option.name == "step" ? said.step : said.channel) = static_cast<int>(number);
         }
     }
     if (said.scalars.empty()) said.scalars = said.dataset;
     return said;
 }
 
-// The scalars in a row along x, from one sample below the range to one above it.
-osg::ref_ptr<Voxels> rowOfValues(const osg::Vec2d& range)
+// The tetrahedra with their scalars or colours.
+Result<osg::ref_ptr<VolumeGeometry>> makeVolume(GridGeometry& geometry)
 {
-    VoxelSource::Description description;
-    description.size = {GridGeometry::SAMPLES + 3, 3, 3};
-    description.type = VoxelType::FLOAT32;
-    osg::ref_ptr<MemoryVoxelSource> source = new MemoryVoxelSource;
-    source->allocate(description);
-    auto* out = static_cast<float*>(source->data());
-    for (int row = 0; row < 9; ++row)
-        for (int i = 0; i < description.size.x; ++i)
-            *out++ = static_cast<float>(range.x() +
-                                        (range.y() - range.x()) * (i - 1) / GridGeometry::SAMPLES);
-    return new Voxels(source);
+    osg::ref_ptr<VolumeGeometry> volume = new VolumeGeometry;
+    volume->setName(geometry.name);
+    Status status = volume->setTetraSet(std::move(geometry.tetras));
+    if (status.ok() && !geometry.scalars.empty())
+        status = volume->setScalars(std::move(geometry.scalars),
+                                    geometry.perTetrahedron ? VolumeGeometry::PER_TETRAHEDRON
+                                                            : VolumeGeometry::PER_VERTEX);
+    if (!status.ok()) return status;
+    return volume;
 }
 
-// The volume is filled through the row of values; the spacing says how finely it is sampled.
-Status fillWithScalars(const GridGeometry& geometry, VolumeAppearance& appearance)
+void tell(const std::string& path, const std::string& what)
 {
-    const osg::ref_ptr<Voxels> voxels = rowOfValues(geometry.range);
-    Status status = voxels->setBrickSize({GridGeometry::SAMPLES + 3, 3, 3});
-    if (status.ok()) status = voxels->setRange(geometry.range);
-    if (status.ok())
-        status =
-            voxels->setSpacing(osg::Vec3d(geometry.spacing, geometry.spacing, geometry.spacing));
-    appearance.setVoxels(voxels);
-    return status;
+    OSG_NOTICE << "osgVolumizer: " << path << what << std::endl;
 }
 
 Result<osg::ref_ptr<osg::Node>> read(const std::string& path, const osgDB::Options* options)
@@ -110,16 +100,18 @@ Result<osg::ref_ptr<osg::Node>> read(const std::string& path, const osgDB::Optio
     const Result<GridFile> file = readGrid(path, said->step.value_or(0));
     if (!file) return file.status;
     if (file->steps > 1 && !said->step)
-        OSG_NOTICE << "osgVolumizer: " << path << " has " << file->steps
-                   << " time steps, the first of which is shown; step=n shows another" << std::endl;
-    Result<GridGeometry> geometry = convertGrid(*file->grid, said->scalars);
+        tell(path, " has " + std::to_string(file->steps) +
+                       " time steps, the first of which is shown; step=n shows another");
+    Result<GridGeometry> geometry = convertGrid(*file->grid, said->scalars, said->channel);
     if (!geometry) return inFile(geometry.status);
+    if (!geometry->notice.empty()) tell(path, ": " + geometry->notice);
+    if (const std::string left = geometry->leftOut.text(); !left.empty())
+        tell(path, ": cells left out: " + left);
 
     osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
     appearance->setName(osgDB::getSimpleFileName(path));
     const double step = geometry->spacing;
-    Status status = geometry->scalars ? fillWithScalars(*geometry, *appearance)
-                                      : appearance->setSamplingPeriod(osg::Vec3d(step, step, step));
+    Status status = appearance->setSamplingPeriod(osg::Vec3d(step, step, step));
     if (status.ok())
         status = appearance->setOpacityUnit(said->unit > 0.0 ? said->unit : 10.0 * step);
     if (status.ok() && !said->table.empty()) {
@@ -129,11 +121,10 @@ Result<osg::ref_ptr<osg::Node>> read(const std::string& path, const osgDB::Optio
         if (!table) return table.status;
         appearance->setLookupTable(table->get());
     }
-    osg::ref_ptr<VolumeGeometry> volume = new VolumeGeometry;
-    volume->setName(geometry->name);
-    if (status.ok()) status = volume->setTetraSet(std::move(geometry->tetras));
     if (!status.ok()) return inFile(status);
-    appearance->addChild(volume);
+    const Result<osg::ref_ptr<VolumeGeometry>> volume = makeVolume(*geometry);
+    if (!volume.ok()) return inFile(volume.status);
+    appearance->addChild(*volume);
     return osg::ref_ptr<osg::Node>(appearance);
 }
 
@@ -159,7 +150,10 @@ public:
     {
         supportsExtension(EXTENSION, "Unstructured grid of VTK (osgVolumizer)");
         supportsOption("step=n", "Time step of a .vtu file of several, from 0; the first");
-        supportsOption("scalars=name", "Point array to show; the active scalars");
+        supportsOption("scalars=name",
+                       "Point or cell array to show, cells:NAME where both have it; "
+                       "the active scalars");
+        supportsOption("channel=n", "Component of the array, from 0; the length of a vector");
         supportsOption("table=file", "Lookup table for scalars, .lut or .tf; a white ramp");
         supportsOption("unit=x", "Object units that opacities are stated for");
     }

@@ -4,65 +4,10 @@
 
 #include <osgDB/FileNameUtils>
 
-#include <vtkDataSetAttributes.h>
-
-#include <algorithm>
 #include <fstream>
 
 namespace osgVolumizer {
 namespace vtkimage {
-
-void FileHead::add(const ArrayInfo& array)
-{
-    const auto same = [&array](const ArrayInfo& a) {
-        return a.name == array.name && a.cells == array.cells;
-    };
-    const bool mark = array.name == vtkDataSetAttributes::GhostArrayName();
-    marks = marks || mark;
-    if (array.name.empty() || mark || std::any_of(arrays.begin(), arrays.end(), same)) return;
-    const auto firstCells =
-        std::find_if(arrays.begin(), arrays.end(), [](const ArrayInfo& a) { return a.cells; });
-    arrays.insert(array.cells ? arrays.end() : firstCells, array);
-}
-
-std::string FileHead::nameOf(const ArrayInfo& array) const
-{
-    const bool shared =
-        array.cells && std::any_of(arrays.begin(), arrays.end(), [&array](const ArrayInfo& a) {
-            return !a.cells && a.name == array.name;
-        });
-    return (shared ? "cells:" : "") + array.name;
-}
-
-Result<ArrayInfo> FileHead::choose(const std::string& name) const
-{
-    constexpr std::size_t MOST_NAMES = 10;
-    if (arrays.empty())
-        return Status(ErrorCode::VALUE_INVALID, "there are no arrays of numbers in it");
-    const auto find = [this](auto&& wanted) {
-        return std::find_if(arrays.begin(), arrays.end(), wanted);
-    };
-    auto found = arrays.end();
-    if (name.empty()) {
-        found = find([this](const ArrayInfo& a) { return !a.cells && a.name == scalars; });
-        if (found == arrays.end())
-            found = find([this](const ArrayInfo& a) { return a.cells && a.name == cellScalars; });
-        if (found == arrays.end())
-            found = find([](const ArrayInfo& a) { return a.components == 1; });
-        return found == arrays.end() ? arrays.front() : *found;
-    }
-    found = find([&](const ArrayInfo& a) { return nameOf(a) == name; });
-    if (found == arrays.end())
-        found = find(
-            [&](const ArrayInfo& a) { return (a.cells ? "cells:" : "points:") + a.name == name; });
-    if (found != arrays.end()) return *found;
-    std::string known;
-    for (std::size_t i = 0; i < std::min(arrays.size(), MOST_NAMES); ++i)
-        known += (i ? ", " : "") + nameOf(arrays[i]);
-    return Status(ErrorCode::VALUE_INVALID, "there is no array \"" + name +
-                                                "\"; there are: " + known +
-                                                (arrays.size() > MOST_NAMES ? ", ..." : ""));
-}
 
 Status notAVolume(const std::string& kind)
 {

@@ -5,6 +5,7 @@
 #include "VtkFiles.h"
 
 #include <osgVolumizer/VolumeAppearance.h>
+#include <osgVolumizer/VolumeGeometry.h>
 #include <osgVolumizer/io/Placement.h>
 
 #include <osgDB/ReadFile>
@@ -190,7 +191,9 @@ TEST_F(VtkTime, StepsOfCells)
         const osg::ref_ptr<osgDB::Options> o = new osgDB::Options(options);
         const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(path("a.vtu"), o);
         const auto* appearance = dynamic_cast<VolumeAppearance*>(node.get());
-        return appearance ? appearance->getVoxels()->getRange().y() : -1.0;
+        const auto* volume =
+            appearance ? dynamic_cast<const VolumeGeometry*>(appearance->getChild(0)) : nullptr;
+        return volume ? volume->getScalarRange().y() : -1.0;
     };
     EXPECT_EQ(load(""), 10.0);
     EXPECT_NE(told().find("3 time steps, the first of which"), std::string::npos) << told();
