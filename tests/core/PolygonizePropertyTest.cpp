@@ -559,7 +559,7 @@ TEST(PolygonizeProperty, BoxTessellationsAgreeWithinTheirClipBox)
             p.space = SamplingSpace::VIEW_VOLUME;
             p.periodVoxel = glm::dvec3(0.25);
             PolygonizedFaces out;
-            const TetraSet set = *tessellateBox(box, static_cast<BoxTessellation>(how));
+            const TetraSet set = tessellateBox(box, static_cast<BoxTessellation>(how));
             ASSERT_TRUE(polygonize(set, {box}, viewAlong(d), p, out).ok());
             for (int s = 0; s < out.surfaceCount; ++s) {
                 const double a = area(out.faces, out.range(s, 0));
