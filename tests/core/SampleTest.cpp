@@ -113,12 +113,6 @@ TEST(Sample, HalfSpacesSplitAllFieldsWithoutGapOrOverlap)
                 if (k < 7 || k > 9) {
                     EXPECT_NEAR(a.record(f, c)[k], field(a.position(f, c), k), 1e-13);
                 }
-    FaceSet single;
-    single.format = a.format;
-    a.appendTo(single);
-    b.appendTo(single, {1.0, 0.0, 0.0});
-    EXPECT_EQ(single.faceCount(), a.faceCount() + b.faceCount());
-    EXPECT_EQ(single.position(0), glm::dvec3(glm::vec3(a.position(0, 0))));
 }
 
 TEST(Sample, RefusesBadIndices)

@@ -55,25 +55,6 @@ void PolygonSet::copyFace(std::size_t face, RecordPolygon& polygon) const
     polygon.close();
 }
 
-void PolygonSet::appendTo(FaceSet& faces, const glm::dvec3& origin) const
-{
-    if (faces.faceOffsets.empty()) faces.faceOffsets.push_back(0);
-    const auto stride = static_cast<std::size_t>(format.stride());
-    const auto position = static_cast<std::size_t>(format.positionOffset());
-    const auto first = static_cast<std::uint32_t>(faces.vertexCount());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::size_t field = i % stride;
-        const bool shift = field >= position && field < position + 3;
-        const double o = shift ? origin[static_cast<int>(field - position)] : 0.0;
-        faces.vertices.push_back(static_cast<float>(values[i] - o));
-    }
-    const std::uint32_t firstIndex = faces.faceOffsets.back();
-    for (std::uint32_t i = 0; i < faceOffsets.back(); ++i)
-        faces.indices.push_back(first + i);
-    for (std::size_t f = 1; f < faceOffsets.size(); ++f)
-        faces.faceOffsets.push_back(firstIndex + faceOffsets[f]);
-}
-
 Status sample(const TetraSet& set, std::size_t tetrahedron, const SurfaceFamily& family,
               const std::vector<double>& depths, PolygonSet& out)
 {

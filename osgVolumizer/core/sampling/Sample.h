@@ -4,7 +4,6 @@
 #include "../Status.h"
 #include "../geometry/Box.h"
 #include "../geometry/ConvexPolytope.h"
-#include "../geometry/FaceSet.h"
 #include "../geometry/TetraSet.h"
 #include "SurfaceFamily.h"
 
@@ -42,8 +41,6 @@ struct OSGVOLUMIZER_CORE_EXPORT PolygonSet
     void clear();
     void append(const RecordPolygon& polygon);
     void copyFace(std::size_t face, RecordPolygon& polygon) const;
-    /// Appends all faces in single precision, positions less `origin`. Expects the same format.
-    void appendTo(FaceSet& faces, const glm::dvec3& origin = glm::dvec3(0.0)) const;
 };
 
 /// Cuts one tetrahedron by surfaces of a family: appends a face for each of the depths at which it
