@@ -1,7 +1,6 @@
 // What holds for every input, tried on random and on nasty ones. Points are compared by their bits.
 
 #include "TestGeometry.h"
-#include "osgVolumizer/core/Parallel.h"
 #include "osgVolumizer/core/geometry/Orientation.h"
 #include "osgVolumizer/core/geometry/Solids.h"
 #include "osgVolumizer/core/geometry/TetraMesh.h"
@@ -294,33 +293,6 @@ TEST(PolygonizeProperty, IndependentOfTranslationByRepresentableOffsets)
         EXPECT_EQ(a.surfaceCount, b.surfaceCount);
         for (int s = 0; s < a.surfaceCount; ++s)
             EXPECT_NEAR(a.surfaceDepths[std::size_t(s)], b.surfaceDepths[std::size_t(s)], 1e-6);
-    }
-}
-
-TEST(PolygonizeProperty, SameBitsForAnyNumberOfThreads)
-{
-    std::mt19937 random(7);
-    const auto set = std::make_shared<TetraSet>(makeGrid(24, 24.0));
-    std::vector<Box3d> boxes = latticeBoxes(glm::dvec3(24.0), random);
-    Polygonizer one;
-    ASSERT_TRUE(one.setTetraSet(set).ok());
-    ASSERT_TRUE(one.setClipBoxes(boxes).ok());
-    PolygonizedFaces a;
-    ASSERT_TRUE(one.polygonize(viewAlong({3, 2, 1}), SamplingParameters(), a).ok());
-    for (const int threads : {2, 3, 7}) {
-        ThreadPool pool(threads);
-        EXPECT_EQ(pool.concurrency(), threads);
-        Polygonizer many;
-        many.setExecutor(&pool);
-        ASSERT_TRUE(many.setTetraSet(set).ok());
-        ASSERT_TRUE(many.setClipBoxes(boxes).ok());
-        for (int i = 0; i < 3; ++i) {
-            PolygonizedFaces b;
-            ASSERT_TRUE(many.polygonize(viewAlong({3, 2, 1}), SamplingParameters(), b).ok());
-            ASSERT_EQ(a.faces.vertices, b.faces.vertices);
-            ASSERT_EQ(a.faces.indices, b.faces.indices);
-            ASSERT_EQ(a.faces.faceOffsets, b.faces.faceOffsets);
-        }
     }
 }
 
