@@ -24,12 +24,6 @@ glm::dvec3 PolygonSet::normal(std::size_t face) const
     return n;
 }
 
-void PolygonSet::clear()
-{
-    values.clear();
-    faceOffsets.assign(1, 0);
-}
-
 void PolygonSet::append(const RecordPolygon& polygon)
 {
     if (polygon.size() < 3) return;

@@ -36,7 +36,6 @@ struct OSGVOLUMIZER_CORE_EXPORT PolygonSet
     }
     /// Twice the area, as a vector along the normal.
     glm::dvec3 normal(std::size_t face) const;
-    void clear();
     void append(const RecordPolygon& polygon);
     void copyFace(std::size_t face, RecordPolygon& polygon) const;
 };
