@@ -124,8 +124,8 @@ void listFace(const TetraBlocks::Tetra& tetra, std::uint32_t t, const int* passe
 void listEdge(const TetraBlocks::Edge& edge, std::uint32_t i, const int* passed,
               Slicer::Work& work);
 
-/// Turns a point of Work::points into its far, near and nearer vertex (8 bits each, the latter 16 up),
-/// and sets the weight; see Between.
+/// Turns a point of Work::points into its far, near and nearer vertex (8 bits each, the latter 16
+/// up), and sets the weight; see Between.
 inline void weighPoint(const double* layers, int base, std::uint32_t& point, double& weight)
 {
     const std::uint32_t a = point & 0xffu, b = point >> 8 & 0xffu;
