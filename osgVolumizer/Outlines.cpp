@@ -47,6 +47,13 @@ osg::ref_ptr<osg::Node> createTetraOutlines(const VolumeGeometry& geometry)
     return about(osg::Matrixd::translate(center.x, center.y, center.z), lines);
 }
 
+osg::ref_ptr<osg::Geometry> createFaceOutlines(const core::FaceSet& faces)
+{
+    core::LineSet lines;
+    core::outlineFaces(faces, 0, faces.faceCount(), lines);
+    return createLines(lines);
+}
+
 std::vector<core::Box3d> brickOutlines(const Voxels& voxels)
 {
     std::vector<core::Box3d> boxes;

@@ -20,6 +20,8 @@ OSGVOLUMIZER_EXPORT osg::ref_ptr<osg::Node> createTetraOutlines(const VolumeGeom
 /// The edges of the bricks of voxels, origin + spacing * voxel; of paged voxels, of the coarsest
 /// level's.
 OSGVOLUMIZER_EXPORT osg::ref_ptr<osg::Node> createBrickOutlines(const Voxels& voxels);
+/// The edges of faces, such as core::polygonize() makes, in their frame.
+OSGVOLUMIZER_EXPORT osg::ref_ptr<osg::Geometry> createFaceOutlines(const core::FaceSet& faces);
 
 /// Lines as they are, in their frame.
 OSGVOLUMIZER_EXPORT osg::ref_ptr<osg::Geometry> createLines(const core::LineSet& lines);

@@ -3,6 +3,7 @@
 #include "Voxels.h"
 #include "core/NumberRule.h"
 #include "core/Text.h"
+#include "core/geometry/Solids.h"
 #include "private/Flattening.h"
 #include "private/Picker.h"
 #include "private/Renderer.h"
@@ -51,57 +52,6 @@ float roundUp(double v)
 {
     const float f = static_cast<float>(v);
     return f < v ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
-}
-
-core::TetraSet tetraSetOf(const std::vector<glm::dvec3>& points,
-                          std::vector<core::TetraSet::Index> indices)
-{
-    core::TetraSet set;
-    set.vertices.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
-        set.vertices.setPosition(i, points[i]);
-    set.indices = std::move(indices);
-    return set;
-}
-
-// The regular tetrahedron of edge directions around the box: a corner at box.min, legs three times
-// as long.
-core::TetraSet enclosingTetrahedron(const core::Box3d& box)
-{
-    const glm::dvec3 legs = 3.0 * box.size();
-    return tetraSetOf({box.min, box.min + glm::dvec3(legs.x, 0, 0),
-                       box.min + glm::dvec3(0, legs.y, 0), box.min + glm::dvec3(0, 0, legs.z)},
-                      {0, 1, 2, 3});
-}
-
-// Four corner tetrahedra and the central one, on the corners numbered as in core::Box3d.
-core::TetraSet fiveTetrahedra(const core::Box3d& box)
-{
-    std::vector<glm::dvec3> corners;
-    for (int i = 0; i < 8; ++i)
-        corners.push_back(box.corner(i));
-    return tetraSetOf(corners, {0, 1, 2, 4, 3, 2, 1, 7, 5, 4, 7, 1, 6, 7, 4, 2, 1, 2, 4, 7});
-}
-
-// Each face is cut into four triangles about its centre, each joined to the centre of the box.
-core::TetraSet twentyFourTetrahedra(const core::Box3d& box)
-{
-    static const core::TetraSet::Index faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                                      {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    std::vector<glm::dvec3> points;
-    for (int i = 0; i < 8; ++i)
-        points.push_back(box.corner(i));
-    points.push_back(box.center());
-    std::vector<core::TetraSet::Index> indices;
-    for (const auto& face : faces) {
-        const auto middle = static_cast<core::TetraSet::Index>(points.size());
-        points.push_back(0.5 * (points[face[0]] + points[face[2]]));
-        for (int k = 0; k < 4; ++k) {
-            for (core::TetraSet::Index i : {face[k], face[(k + 1) % 4], middle, 8u})
-                indices.push_back(i);
-        }
-    }
-    return tetraSetOf(points, std::move(indices));
 }
 
 // Of the finite values; never empty, as far as floats can tell.
@@ -164,9 +114,10 @@ osg::ref_ptr<VolumeGeometry> VolumeGeometry::createBox(const osg::BoundingBoxd& 
 ReportedStatus VolumeGeometry::setBox(const osg::BoundingBoxd& box, BoxTessellation tessellation)
 {
     const core::Box3d b{{box.xMin(), box.yMin(), box.zMin()}, {box.xMax(), box.yMax(), box.zMax()}};
-    return setTetraSet(tessellation == ENCLOSING     ? enclosingTetrahedron(b)
-                       : tessellation == TWENTY_FOUR ? twentyFourTetrahedra(b)
-                                                     : fiveTetrahedra(b));
+    return setTetraSet(
+        core::tessellateBox(b, tessellation == ENCLOSING     ? core::BoxTessellation::ENCLOSING
+                               : tessellation == TWENTY_FOUR ? core::BoxTessellation::TWENTY_FOUR
+                                                             : core::BoxTessellation::FIVE));
 }
 
 ReportedStatus VolumeGeometry::setTetraSet(core::TetraSet tetraSet)

@@ -45,10 +45,6 @@ public:
         _entries.push_front({std::move(key), std::move(value)});
         return _entries.front().value;
     }
-    void remove(const Key& key)
-    {
-        removeIf([&key](const Entry& entry) { return entry.key == key; });
-    }
     /// Forgets the entries for which the predicate holds.
     template <class Predicate>
     void removeIf(Predicate predicate)

@@ -15,7 +15,7 @@ namespace {
 
 const char* const MAGIC = "osgVolumizer pyramid";
 
-Status unreadable(const std::string& text)
+Status unreadablePyramid(const std::string& text)
 {
     return {ErrorCode::FILE_UNREADABLE, "the header of the pyramid " + text};
 }
@@ -55,7 +55,7 @@ Result<PyramidFormat> PyramidFormat::parse(const std::string& text)
     std::istringstream in(text);
     std::string line;
     if (!std::getline(in, line) || line != std::string(MAGIC) + " 1")
-        return unreadable("does not begin with \"" + std::string(MAGIC) + " 1\"");
+        return unreadablePyramid("does not begin with \"" + std::string(MAGIC) + " 1\"");
     std::map<std::string, std::string> values;
     while (std::getline(in, line)) {
         const std::size_t blank = std::min(line.find(' '), line.size());
@@ -64,28 +64,29 @@ Result<PyramidFormat> PyramidFormat::parse(const std::string& text)
     PyramidFormat format;
     VoxelSource::Description& d = format.description;
     double size[3], components = 0.0;
-    if (!core::parseNumbers(values["size"], size, 3)) return unreadable("has no size");
+    if (!core::parseNumbers(values["size"], size, 3)) return unreadablePyramid("has no size");
     for (int axis = 0; axis < 3; ++axis) {
-        if (!(size[axis] >= 1.0 && size[axis] <= 1e9)) return unreadable("has a wrong size");
+        if (!(size[axis] >= 1.0 && size[axis] <= 1e9)) return unreadablePyramid("has a wrong size");
         d.size[axis] = static_cast<int>(size[axis]);
     }
     const Result<VoxelType> type = voxelTypeFromName(values["type"]);
-    if (!type.ok()) return unreadable("has a wrong type: " + type.status.text);
+    if (!type.ok()) return unreadablePyramid("has a wrong type: " + type.status.text);
     d.type = *type;
     if (!core::parseNumber(values["components"], components))
-        return unreadable("has no number of components");
+        return unreadablePyramid("has no number of components");
     d.components = components == 4.0 ? 4 : components == 1.0 ? 1 : 0;
     if (!core::parseNumbers(values["spacing"], &d.spacing[0], 3) ||
         !core::parseNumbers(values["origin"], &d.origin[0], 3) ||
         !core::parseNumbers(values["axes"], &d.axes[0][0], 9))
-        return unreadable("does not say where the voxels lie");
+        return unreadablePyramid("does not say where the voxels lie");
     for (int i = 0; i < 9; ++i)
-        if (!(std::abs(d.axes[i / 3][i % 3]) <= 1.001)) return unreadable("has wrong axes");
-    if (values["rule"] != "mean" && values["rule"] != "mode") return unreadable("has a wrong rule");
+        if (!(std::abs(d.axes[i / 3][i % 3]) <= 1.001)) return unreadablePyramid("has wrong axes");
+    if (values["rule"] != "mean" && values["rule"] != "mode")
+        return unreadablePyramid("has a wrong rule");
     format.rule = values["rule"] == "mode" ? core::LevelRule::MODE : core::LevelRule::MEAN;
     format.origin = values["from"];
     if (Status status = d.validate(); !status.ok())
-        return unreadable("describes no voxels: " + status.text);
+        return unreadablePyramid("describes no voxels: " + status.text);
     return format;
 }
 

@@ -40,7 +40,6 @@ TEST(Lattices, AtRestAreTheBoxToTheBit)
                       (set->vertices.position(i) - ORIGIN) / SPACING);
         EXPECT_EQ(set->bounds(), rest.box);
         EXPECT_NEAR(volume(*set), 4 * 6 * 3, 1e-9);
-        EXPECT_EQ(rest.map({2, 3, 4}), glm::dvec3(2, 3, 4));
     }
 }
 
@@ -53,16 +52,14 @@ TEST(Lattices, BendByBernsteinPolynomials)
     const std::size_t moved = (1 * 3 + 1) * 5 + 2;
     EXPECT_EQ(bent.restPoint(moved), glm::dvec3(3, 5, 6));
     bent.offsets[moved] = {0.3, -0.2, 0.1};
-    for (const glm::dvec3& u : {glm::dvec3(0.25, 0.5, 0.75), {0.1, 0.9, 1.0}, {0.0, 0.3, 0.3}}) {
-        const glm::dvec3 p = bent.box.min + u * bent.box.size();
-        const double weight = 6 * u.x * u.x * (1 - u.x) * (1 - u.x) * 2 * u.y * (1 - u.y) * u.z;
-        EXPECT_LT(glm::length(bent.map(p) - p - weight * bent.offsets[moved]), 1e-14);
-    }
     const Result<TetraSet> set = bent.tessellate({6, 5, 4}, ORIGIN, SPACING);
     ASSERT_TRUE(set.ok());
     for (std::size_t i = 0; i < set->vertices.size(); ++i) {
         const glm::dvec3 rest = set->vertices.voxelCoordinate(i) * SPACING + ORIGIN;
-        EXPECT_LT(glm::length(set->vertices.position(i) - bent.map(rest)), 1e-13);
+        const glm::dvec3 u = (rest - bent.box.min) / bent.box.size();
+        const double weight = 6 * u.x * u.x * (1 - u.x) * (1 - u.x) * 2 * u.y * (1 - u.y) * u.z;
+        EXPECT_LT(glm::length(set->vertices.position(i) - rest - weight * bent.offsets[moved]),
+                  1e-13);
     }
 }
 

@@ -90,14 +90,14 @@ TEST(PolygonizeSpaces, DepthsDescendAndAreThoseOfTheFaces)
         }
         expectFacing(out,
                      mode == SamplingMode::SPHERICAL ? -glm::normalize(glm::dvec3(3, -2, 1))
-                                                     : -*viewDirection(view),
+                                                     : -glm::normalize(view.depthGradient()),
                      mode == SamplingMode::SPHERICAL ? 1e-3 : 1e-5);
         if (mode == SamplingMode::SPHERICAL) continue;
         // A mirrored model keeps the rule in its own frame.
         View mirrored = view;
         mirrored.toEye = mirrored.toEye * glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1));
         ASSERT_TRUE(polygonize(grid, {}, mirrored, p, out).ok());
-        expectFacing(out, -*viewDirection(mirrored), 1e-5);
+        expectFacing(out, -glm::normalize(mirrored.depthGradient()), 1e-5);
     }
 }
 

@@ -83,8 +83,7 @@ TEST(RecencyCache, ReferencesStayValid)
 TEST(RecencyCache, Removes)
 {
     Cache cache = abc(3);
-    cache.remove(2);
-    cache.remove(9);
+    cache.removeIf([](const Cache::Entry& entry) { return entry.key == 2; });
     EXPECT_EQ(keysOf(cache), (std::vector<int>{3, 1}));
     cache.removeIf([](const Cache::Entry& entry) { return entry.value == "c"; });
     EXPECT_EQ(keysOf(cache), (std::vector<int>{1}));

@@ -63,6 +63,18 @@ VertexArray vertexArray(const std::vector<glm::dvec3>& points)
     return v;
 }
 
+/// Turns inverted tetrahedra round; returns how many.
+std::size_t turnInverted(TetraSet& set)
+{
+    std::size_t turned = 0;
+    for (std::size_t t = 0; t < set.tetraCount(); ++t)
+        if (orientation(set, t) < 0.0) {
+            std::swap(set.indices[4 * t], set.indices[4 * t + 1]);
+            ++turned;
+        }
+    return turned;
+}
+
 std::vector<TetraSet::Index> counting(std::size_t n)
 {
     std::vector<TetraSet::Index> r(n);
@@ -76,21 +88,18 @@ TEST(Solids, BoxInFiveTwentyFourAndOne)
 {
     const Box3d box{{1, 2, 3}, {3, 5, 10}};
     for (const auto how : {BoxTessellation::FIVE, BoxTessellation::TWENTY_FOUR}) {
-        const Result<TetraSet> set = tessellateBox(box, how);
-        ASSERT_TRUE(set.ok());
-        expectMesh(*set);
-        EXPECT_NEAR(volume(*set), 42.0, 1e-12);
-        EXPECT_EQ(set->tetraCount(), how == BoxTessellation::FIVE ? 5u : 24u);
+        const TetraSet set = tessellateBox(box, how);
+        expectMesh(set);
+        EXPECT_NEAR(volume(set), 42.0, 1e-12);
+        EXPECT_EQ(set.tetraCount(), how == BoxTessellation::FIVE ? 5u : 24u);
     }
-    const Result<TetraSet> one = tessellateBox(box, BoxTessellation::ENCLOSING);
-    ASSERT_EQ(one->tetraCount(), 1u);
-    expectMesh(*one);
-    const PointLocator locator(*one);
+    const TetraSet one = tessellateBox(box, BoxTessellation::ENCLOSING);
+    ASSERT_EQ(one.tetraCount(), 1u);
+    expectMesh(one);
+    const PointLocator locator(one);
     for (int i = 0; i < 8; ++i)
         EXPECT_TRUE(locator.locate(box.corner(i))) << i;
-    EXPECT_NEAR(volume(*one), 9.0 * 42.0, 1e-9);
-    EXPECT_EQ(tessellateBox({{0, 0, 0}, {1, 0, 1}}, BoxTessellation::FIVE).status.code,
-              ErrorCode::VALUE_INVALID);
+    EXPECT_NEAR(volume(one), 4.5 * 42.0, 1e-11);
 }
 
 TEST(Solids, RoundOnesConvergeAtSecondOrder)
@@ -260,11 +269,11 @@ TEST(Cells, Strips)
         for (int z = 0; z < 2; ++z)
             pairs.push_back(glm::dvec3(i * 0.5, i % 2, z));
     TetraSet faces = strip(StripKind::PRISM_FACE, pairs);
-    EXPECT_EQ(repairOrientation(faces), 6u); // every other prism of a strip is turned round
+    EXPECT_EQ(turnInverted(faces), 6u); // every other prism of a strip is turned round
     expectMesh(faces);
     EXPECT_NEAR(volume(faces), 1.5, 1e-12);
     TetraSet edges = strip(StripKind::PRISM_EDGE, pairs);
-    repairOrientation(edges);
+    turnInverted(edges);
     EXPECT_EQ(edges.tetraCount(), 6u);
     EXPECT_NEAR(volume(edges), 1.0, 1e-12);
     // Pyramids over a quad strip.
@@ -273,7 +282,7 @@ TEST(Cells, Strips)
         for (int y = 0; y < 2; ++y)
             pyramids.push_back(glm::dvec3(x, y, 0));
     TetraSet fan = strip(StripKind::PYRAMID, pyramids);
-    repairOrientation(fan);
+    turnInverted(fan);
     expectMesh(fan);
     EXPECT_NEAR(volume(fan), 2.0, 1e-12);
     // Tetrahedra.

@@ -2,6 +2,7 @@
 
 #include "osgVolumizer/core/geometry/TetraSet.h"
 #include "osgVolumizer/core/sampling/Polygonize.h"
+#include "osgVolumizer/core/sampling/Sample.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -87,6 +88,14 @@ inline double area(const core::FaceSet& faces, const core::FaceRange& range,
         if (sum) *sum += n;
         r += glm::length(n);
     }
+    return r;
+}
+
+inline double area(const core::PolygonSet& polygons)
+{
+    double r = 0.0;
+    for (std::size_t f = 0; f < polygons.faceCount(); ++f)
+        r += 0.5 * glm::length(polygons.normal(f));
     return r;
 }
 

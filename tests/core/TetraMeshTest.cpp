@@ -53,8 +53,6 @@ TEST(TetraMesh, AdjacencyBoundaryAndOrientation)
                          r = grid.vertices.position(f[2]);
         EXPECT_GT(glm::dot(glm::cross(q - p, r - p), p + q + r - glm::dvec3(4.5)), 0.0);
     }
-    EXPECT_EQ(repairOrientation(grid), 2u);
-    EXPECT_EQ(repairOrientation(grid), 0u);
     // A third tetrahedron on one face.
     TetraSet three;
     three.vertices.resize(6);
@@ -104,88 +102,6 @@ TEST(TetraMesh, LocatesPointsWithTheirWeights)
     EXPECT_FALSE(PointLocator(TetraSet()).locate(glm::dvec3(0.0)));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(locator.locate({nan, 1.0, 1.0}));
-}
-
-TEST(TetraMesh, VisibilityOrderHoldsAlongEveryRay)
-{
-    const TetraSet grid = makeGrid(3, 3.0);
-    const Adjacency a = findAdjacency(grid);
-    const PointLocator locator(grid);
-    std::mt19937 random(9);
-    std::uniform_real_distribution<double> u(-4.0, 7.0), d(-1.0, 1.0);
-    for (int round = 0; round < 12; ++round) {
-        const glm::dvec4 eye = round % 3 ? glm::dvec4(u(random), u(random), u(random), 1.0)
-                                         : glm::dvec4(d(random), d(random), d(random), 0.0);
-        const VisibilityOrder order = visibilityOrder(grid, a, eye);
-        EXPECT_TRUE(order.cyclic.empty());
-        ASSERT_EQ(order.order.size(), grid.tetraCount());
-        std::vector<std::size_t> place(grid.tetraCount());
-        for (std::size_t i = 0; i < order.order.size(); ++i)
-            place[order.order[i]] = i;
-        for (int ray = 0; ray < 40; ++ray) {
-            const glm::dvec3 inside(u(random) * 0.25 + 1.1, u(random) * 0.25 + 1.1,
-                                    u(random) * 0.25 + 1.1);
-            const glm::dvec3 start =
-                eye.w != 0.0 ? glm::dvec3(eye) : inside + 20.0 * glm::normalize(glm::dvec3(eye));
-            const glm::dvec3 step = glm::normalize(inside - start) * 0.017;
-            std::size_t last = grid.tetraCount();
-            for (int i = 0; i < 2000; ++i) {
-                const auto hit = locator.locate(start + double(i) * step);
-                if (!hit) continue;
-                ASSERT_LE(place[hit->tetrahedron], last);
-                last = place[hit->tetrahedron];
-            }
-        }
-    }
-}
-
-TEST(TetraMesh, CyclesAreReportedAndAllTetrahedraStillCome)
-{
-    // Three slabs that lie on each other in a ring (like the leaves of a box lid), seen from above:
-    // each has the next behind it. Made by hand as adjacency over three faces.
-    TetraSet set;
-    const double third = 2.0943951023931953;
-    for (int i = 0; i < 3; ++i) {
-        // A tetrahedron that begins low at angle i and ends high at the next.
-        const double a = third * i, b = third * (i + 1.0);
-        const std::size_t n = set.vertices.size();
-        set.vertices.resize(n + 4);
-        set.vertices.setPosition(n, {std::cos(a), std::sin(a), -1.0});
-        set.vertices.setPosition(n + 1, {0.3 * std::cos(a), 0.3 * std::sin(a), -1.0});
-        set.vertices.setPosition(n + 2, {std::cos(b), std::sin(b), 1.0});
-        set.vertices.setPosition(n + 3, {0.3 * std::cos(b), 0.3 * std::sin(b), 1.0});
-        for (TetraSet::Index k = 0; k < 4; ++k)
-            set.indices.push_back(TetraSet::Index(n) + k);
-    }
-    repairOrientation(set);
-    // Each one's lower end lies below the upper end of the one before. Relate them over the faces
-    // that look up and down there.
-    Adjacency a = findAdjacency(set);
-    const auto facing = [&](std::size_t t, double sign) {
-        for (int i = 0; i < 4; ++i) {
-            glm::dvec3 p[3];
-            int k = 0;
-            for (int j = 0; j < 4; ++j)
-                if (j != i) p[k++] = set.vertices.position(set.indices[4 * t + std::size_t(j)]);
-            glm::dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
-            const glm::dvec3 o = set.vertices.position(set.indices[4 * t + std::size_t(i)]);
-            if (glm::dot(n, o - p[0]) > 0.0) n = -n;
-            if (n.z * sign > 0.0 && a.neighbours[t][std::size_t(i)] == Adjacency::NONE) return i;
-        }
-        return -1;
-    };
-    for (std::size_t t = 0; t < 3; ++t) {
-        const std::size_t next = (t + 1) % 3;
-        const int up = facing(next, 1.0);
-        ASSERT_GE(up, 0);
-        a.neighbours[next][std::size_t(up)] = std::int32_t(t);
-        const int down = facing(t, -1.0);
-        ASSERT_GE(down, 0);
-        a.neighbours[t][std::size_t(down)] = std::int32_t(next);
-    }
-    const VisibilityOrder order = visibilityOrder(set, a, {0, 0, 1, 0});
-    EXPECT_EQ(order.order.size(), 3u);
-    EXPECT_FALSE(order.cyclic.empty());
 }
 
 } // namespace TetraMeshTest

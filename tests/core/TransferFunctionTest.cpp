@@ -27,8 +27,6 @@ TEST(TransferFunction, TheLaterPointOfAJumpHoldsFromThere)
     ASSERT_TRUE(step.ok());
     EXPECT_EQ(0.0, step->evaluate(std::nextafter(0.5, 0.0)).a);
     EXPECT_EQ(1.0, step->evaluate(0.5).a);
-    EXPECT_TRUE(step->hasJumps());
-    EXPECT_FALSE(TransferFunction().hasJumps());
 }
 
 TEST(TransferFunction, ExtremeOpacitiesAreExact)

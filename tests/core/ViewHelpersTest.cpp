@@ -1,5 +1,4 @@
 #include "osgVolumizer/core/sampling/ViewHelpers.h"
-#include "osgVolumizer/core/sampling/Polygonize.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -31,7 +30,7 @@ TEST(ViewHelpers, EyeAndDirectionInAnyProjection)
     View v = lookFrom(eye, center);
     const glm::dvec3 direction = glm::normalize(center - eye);
     EXPECT_LT(glm::length(glm::dvec3(*eyePosition(v)) - eye), 1e-12);
-    EXPECT_LT(glm::length(*viewDirection(v) - direction), 1e-14);
+    EXPECT_LT(glm::length(*viewDirectionAt(v, glm::dvec3(*eyePosition(v))) - direction), 1e-14);
     v.projection = glm::frustum(-0.1, 0.7, -0.2, 0.1, 0.5, 90.0); // off-axis
     EXPECT_LT(glm::length(glm::dvec3(*eyePosition(v)) - eye), 1e-12);
     EXPECT_EQ(eyePosition(v)->w, 1.0);
@@ -60,7 +59,7 @@ TEST(ViewHelpers, SingularIsJudgedWithoutRegardToScaleAndPlace)
         v.projection = glm::perspective(1.0, 1.0, 1.0, 10.0);
         v.toEye = glm::dmat4(1.0);
         v.toEye[2] = glm::dvec4(1.0, 0.0, z, 0.0); // almost the first column
-        EXPECT_EQ(viewDirection(v).status.code, ErrorCode::SINGULAR_MATRIX) << z;
+        EXPECT_EQ(viewDirectionAt(v, glm::dvec3(0.0)).status.code, ErrorCode::SINGULAR_MATRIX) << z;
         EXPECT_EQ(closestAxis(v, glm::dvec3(0.0), glm::dvec3(1.0)).status.code,
                   ErrorCode::SINGULAR_MATRIX);
     }
@@ -89,26 +88,6 @@ TEST(ViewHelpers, NearAndFar)
     EXPECT_NEAR(o.nearDepth, -7.0, 1e-13);
     EXPECT_NEAR(o.farDepth, 9.0, 1e-13);
     EXPECT_TRUE(std::isinf(nearFar(glm::infinitePerspective(1.0, 1.0, 0.25))->farDepth));
-}
-
-TEST(ViewHelpers, ProjectedAreaOfASquareAndOfOneAroundTheEye)
-{
-    FaceSet faces;
-    faces.clear();
-    faces.vertices = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
-    faces.indices = {0, 1, 2, 3};
-    faces.faceOffsets = {0, 4};
-    View v;
-    v.projection = glm::ortho(-4.0, 4.0, -4.0, 4.0, 1.0, 10.0);
-    EXPECT_NEAR(*projectedArea(faces, v), 4.0 / 64.0, 1e-15);
-    v.toEye = glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -2));
-    v.projection = glm::frustum(-0.5, 0.5, -0.5, 0.5, 1.0, 10.0); // 2 x 2 at depth 2
-    EXPECT_NEAR(*projectedArea(faces, v), 1.0, 1e-14);
-    // Lying flat below the eye, half of it behind.
-    v.toEye = glm::rotate(glm::dmat4(1.0), -1.5707963267948966, glm::dvec3(1, 0, 0));
-    v.toEye[3] = glm::dvec4(0, -1, 0, 1);
-    EXPECT_TRUE(std::isfinite(*projectedArea(faces, v)));
-    EXPECT_GT(*projectedArea(faces, v), 0.5);
 }
 
 TEST(ViewHelpers, LastRowMayBeOffByRounding)

@@ -59,7 +59,8 @@ TEST(LookupTable, Ramp)
     EXPECT_EQ(1.0, table->getFunction()->evaluate(0.3).a);
     EXPECT_EQ(0.0, table->getFunction()->evaluate(0.7).a);
     ASSERT_TRUE(table->setRamp(0.5, 0.0).ok());
-    EXPECT_TRUE(table->getFunction()->hasJumps());
+    EXPECT_EQ(0.0, table->getFunction()->evaluate(std::nextafter(0.5, 0.0)).a);
+    EXPECT_EQ(1.0, table->getFunction()->evaluate(0.5).a);
 }
 
 TEST(LookupTable, RefusedChangesKeepTheOldTable)

@@ -2,6 +2,7 @@
 
 #include "Volumes.h"
 
+#include <osgVolumizer/VolumeSolids.h>
 #include <support/GLTest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -180,6 +181,39 @@ TEST_F(Geometry, ConcaveSetsAreFilledOnce)
         scene.volumes.push_back(volume);
     }
     expectOracle(scene, "concave");
+}
+
+TEST_F(Geometry, ABoxWithAHoleIsTheBoxAroundIt)
+{
+    // Along the hole: each ray meets either as much of the voxels as in the whole box, or nothing.
+    const double radius = 6.0, half = 12.0;
+    const osg::Vec3d center(12, 10, 8);
+    const GeometryResult drilled =
+        createBoxMinusCylinder(osg::BoundingBoxd(0, 0, 0, 24, 20, 16), center, 2, radius, 16, 2);
+    ASSERT_TRUE(drilled.ok()) << drilled.status.text;
+    _twin.node->setTechnique(VolumeAppearance::SLICES);
+    RenderOptions options;
+    options.size(80, 80).lookAt({12, 10, 60}, center, {0, 1, 0}).orthographic(half);
+    const FloatImage box = support::renderScene(_twin.node, options);
+    _twin.node->setChild(0, *drilled);
+    const FloatImage image = support::renderScene(_twin.node, options);
+    support::savePicture(image, "geometry_hole");
+    double difference = 0.0, inside = 0.0, least = 1.0;
+    const double pixel = 2.0 * half / 80.0;
+    for (int y = 0; y < 80; ++y)
+        for (int x = 0; x < 80; ++x) {
+            const double distance = std::hypot((x - 39.5) * pixel, (y - 39.5) * pixel);
+            if (distance < 0.99 * radius - pixel) {
+                inside = std::max(inside, double(image.at(x, y).a));
+                least = std::min(least, double(box.at(x, y).a));
+            } else if (distance > radius + pixel) {
+                const glm::vec4 d = glm::abs(image.at(x, y) - box.at(x, y));
+                difference = std::max(difference, double(std::max({d.r, d.g, d.b, d.a})));
+            }
+        }
+    EXPECT_EQ(inside, 0.0);
+    EXPECT_GT(least, 0.05); // of the box there
+    EXPECT_LT(difference, 1e-5);
 }
 
 TEST_F(Geometry, AffineVoxelCoordinates)

@@ -116,14 +116,6 @@ Status Lattice::validate() const
     return {};
 }
 
-glm::dvec3 Lattice::map(const glm::dvec3& point) const
-{
-    if (offsets.empty()) return point;
-    const glm::dvec3 u = (point - box.min) / box.size();
-    return point + offsetAt(*this, bernstein(points.x, u.x), bernstein(points.y, u.y),
-                            bernstein(points.z, u.z));
-}
-
 Result<TetraSet> Lattice::tessellate(const glm::ivec3& cells, const glm::dvec3& origin,
                                      const glm::dvec3& spacing) const
 {

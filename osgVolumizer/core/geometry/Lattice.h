@@ -33,8 +33,6 @@ struct OSGVOLUMIZER_CORE_EXPORT Lattice
     /// another number of offsets than of points.
     Status validate() const;
 
-    /// Where a point of the box goes. Expects what validate() accepts.
-    glm::dvec3 map(const glm::dvec3& point) const;
     /// The bent box: `cells` hexahedra along each axis, cut into tetrahedra, whose vertices keep
     /// the voxel coordinates that they have at rest, (point - origin) / spacing. Refuses, besides
     /// what validate() does, numbers of cells below 1 or above MOST_CELLS, and (VALUE_INVALID, with

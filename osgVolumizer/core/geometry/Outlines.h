@@ -18,8 +18,6 @@ struct LineSet
 {
     std::vector<glm::dvec3> points;
     std::vector<std::uint32_t> indices; ///< two per segment
-
-    std::size_t lineCount() const { return indices.size() / 2; }
 };
 
 /// Every edge of the tetrahedra once, appended. Expects a valid set.

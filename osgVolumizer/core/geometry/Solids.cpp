@@ -78,39 +78,40 @@ glm::dvec3 onCircle(const glm::dvec3& center, const glm::dvec3& u, const glm::dv
     return center + radius * (std::cos(angle) * u + std::sin(angle) * v);
 }
 
-} // namespace
-
-Result<TetraSet> tessellateBox(const Box3d& box, BoxTessellation how)
+// Each face of the box is cut into four triangles about its centre, each joined to the centre of
+// the box. Expects the corners.
+void addTwentyFour(TetraSet& set, const glm::dvec3& boxCenter)
 {
-    Check check("Box");
-    check.finite("min", box.min).finite("max", box.max);
-    for (int a = 0; a < 3; ++a)
-        check.positive("size", box.size()[a]);
-    if (!check.status) return check.status;
-    TetraSet set;
-    if (how == BoxTessellation::ENCLOSING) {
-        // x + y + z <= 3 and its three mirror images touch the cube [-1, 1]^3 in four corners.
-        static constexpr double corners[4][3] = {{-3, -3, -3}, {-3, 3, 3}, {3, -3, 3}, {3, 3, -3}};
-        for (const auto& c : corners)
-            addVertex(set, box.center() + 0.5 * box.size() * glm::dvec3(c[0], c[1], c[2]));
-        set.indices = {0, 1, 2, 3};
-        return set;
-    }
-    for (int i = 0; i < 8; ++i)
-        addVertex(set, box.corner(i));
-    if (how == BoxTessellation::FIVE) {
-        set.indices = {0, 5, 3, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 5, 0, 6, 7, 3, 5, 6};
-        return set;
-    }
     static constexpr Index rings[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                           {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    const Index middle = addVertex(set, box.center());
+    const Index middle = addVertex(set, boxCenter);
     for (const auto& ring : rings) {
         const Index center =
             addVertex(set, 0.5 * (set.vertices.position(ring[0]) + set.vertices.position(ring[2])));
         for (int i = 0; i < 4; ++i)
             set.indices.insert(set.indices.end(), {ring[i], center, ring[(i + 1) % 4], middle});
     }
+}
+
+} // namespace
+
+TetraSet tessellateBox(const Box3d& box, BoxTessellation how)
+{
+    TetraSet set;
+    if (how == BoxTessellation::ENCLOSING) {
+        const glm::dvec3 legs = 3.0 * box.size();
+        for (const glm::dvec3& leg :
+             {glm::dvec3(0, 0, 0), {legs.x, 0, 0}, {0, legs.y, 0}, {0, 0, legs.z}})
+            addVertex(set, box.min + leg);
+        set.indices = {0, 1, 2, 3};
+        return set;
+    }
+    for (int i = 0; i < 8; ++i)
+        addVertex(set, box.corner(i));
+    if (how == BoxTessellation::FIVE)
+        set.indices = {0, 1, 2, 4, 3, 2, 1, 7, 5, 4, 7, 1, 6, 7, 4, 2, 1, 2, 4, 7};
+    else
+        addTwentyFour(set, box.center());
     return set;
 }
 

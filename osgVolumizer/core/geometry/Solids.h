@@ -65,9 +65,10 @@ OSGVOLUMIZER_CORE_EXPORT int cellSize(CellKind kind);
 OSGVOLUMIZER_CORE_EXPORT Result<CellSet> makeStrip(StripKind kind, VertexArray vertices,
                                                    const std::vector<TetraSet::Index>& indices);
 
-/// VALUE_INVALID for an empty box. ENCLOSING is a tetrahedron that touches the box with its four
-/// faces in four of its corners.
-OSGVOLUMIZER_CORE_EXPORT Result<TetraSet> tessellateBox(const Box3d& box, BoxTessellation how);
+/// FIVE: one at every other corner, and the one that they leave. ENCLOSING: a corner at box.min
+/// with legs three times as long as the box, the smallest tetrahedron around it: 4.5 times its
+/// volume. Takes any box, also one without thickness; TetraSet::validate() tells of others.
+OSGVOLUMIZER_CORE_EXPORT TetraSet tessellateBox(const Box3d& box, BoxTessellation how);
 
 // Solids with curved faces are inscribed, so that their volumes converge from below, at second
 // order in 1/slices. All refuse (VALUE_INVALID) radii and lengths that are not positive and finite,

@@ -12,8 +12,8 @@ namespace osgVolumizer {
 namespace core {
 
 /// A tetra set cut into blocks of neighbouring tetrahedra with vertices and edges of their own, so
-/// that one block stays in the first-level cache, is culled by one box test, and is the unit of
-/// work of a thread. Tetrahedra are taken along a Morton curve; all get positive orientation.
+/// that one block stays in the first-level cache and is culled by one box test. Tetrahedra are
+/// taken along a Morton curve; all get positive orientation.
 class OSGVOLUMIZER_CORE_EXPORT TetraBlocks
 {
 public:

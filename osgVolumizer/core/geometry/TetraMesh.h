@@ -23,9 +23,6 @@ OSGVOLUMIZER_CORE_EXPORT double orientation(const TetraSet& set, std::size_t tet
 /// Sum of the volumes, each counted positive.
 OSGVOLUMIZER_CORE_EXPORT double volume(const TetraSet& set);
 
-/// Turns inverted tetrahedra round; returns how many.
-OSGVOLUMIZER_CORE_EXPORT std::size_t repairOrientation(TetraSet& set);
-
 /// The neighbours of each tetrahedron.
 struct Adjacency
 {
@@ -49,24 +46,6 @@ boundaryFaces(const TetraSet& set, const Adjacency& adjacency);
 /// in the format. SINGULAR_MATRIX for a tetrahedron without volume, INDEX_OUT_OF_RANGE.
 OSGVOLUMIZER_CORE_EXPORT Result<glm::dmat4> positionToVoxel(const TetraSet& set,
                                                             std::size_t tetrahedron);
-
-/// Far-to-near order of tetrahedra for a viewpoint.
-struct VisibilityOrder
-{
-    std::vector<std::uint32_t> order;
-    /// Tetrahedra that were taken although something behind them was left: members of cycles.
-    std::vector<std::uint32_t> cyclic;
-};
-
-/// Meshed polyhedra visibility ordering (Williams, "Visibility-ordering meshed polyhedra", ACM TOG
-/// 11, 1992): over every shared face the tetrahedron on the eye's side comes later. Exact for
-/// convex meshes without cycles; among tetrahedra that no face relates, those with farther centres
-/// come first (his heuristic for meshes with holes). Where a cycle leaves no choice, the farthest
-/// goes first and is reported. \param eye homogeneous, in the position frame: w = 0 is the
-/// direction towards the eye
-OSGVOLUMIZER_CORE_EXPORT VisibilityOrder visibilityOrder(const TetraSet& set,
-                                                         const Adjacency& adjacency,
-                                                         const glm::dvec4& eye);
 
 /// Finds the tetrahedron around a point: a tree of boxes, split in the middle of the longest axis.
 class OSGVOLUMIZER_CORE_EXPORT PointLocator

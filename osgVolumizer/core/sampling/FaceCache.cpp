@@ -82,7 +82,6 @@ struct FaceCache::Private
 
     mutable std::mutex mutex; ///< guards the entries' list only
     RecencyCache<ViewId, std::shared_ptr<Entry>> entries;
-    std::atomic<std::uint64_t> polygonizations{0}, reuses{0};
 };
 
 FaceCache::FaceCache(std::size_t capacity) : _private(new Private(capacity)) {}
@@ -167,40 +166,11 @@ Result<FaceCache::FacesPtr> FaceCache::faces(ViewId viewId,
     const std::shared_ptr<Private::Entry> entry = _private->entryOf(viewId);
     const std::lock_guard<std::mutex> lock(entry->mutex);
     if (entry->reusable(tetraSet, clipBoxes, view, parameters, slackAngle)) {
-        ++_private->reuses;
         return entry->made.faces;
     }
     if (Status s = entry->make(tetraSet, clipBoxes, view, parameters); !s) return s;
-    ++_private->polygonizations;
     if (polygonized) *polygonized = true;
     return entry->made.faces;
-}
-
-void FaceCache::forget(ViewId viewId)
-{
-    const std::lock_guard<std::mutex> lock(_private->mutex);
-    _private->entries.remove(viewId);
-}
-
-void FaceCache::clear()
-{
-    const std::lock_guard<std::mutex> lock(_private->mutex);
-    _private->entries.clear();
-}
-
-std::size_t FaceCache::viewCount() const
-{
-    const std::lock_guard<std::mutex> lock(_private->mutex);
-    return _private->entries.size();
-}
-
-std::uint64_t FaceCache::polygonizations() const
-{
-    return _private->polygonizations;
-}
-std::uint64_t FaceCache::reuses() const
-{
-    return _private->reuses;
 }
 
 } // namespace core

@@ -45,15 +45,6 @@ public:
                            const SamplingParameters& parameters, double slackAngle = 0.0,
                            bool* polygonized = nullptr);
 
-    /// Forgets a view, or all.
-    void forget(ViewId viewId);
-    void clear();
-
-    std::size_t viewCount() const;
-    /// The number of calls that polygonized, and of those that did not need to.
-    std::uint64_t polygonizations() const;
-    std::uint64_t reuses() const;
-
 private:
     struct Private;
     std::unique_ptr<Private> _private;

@@ -97,11 +97,6 @@ Status Polygonizer::setClipBoxes(const std::vector<Box3d>& clipBoxes)
     return {};
 }
 
-void Polygonizer::setExecutor(Executor* executor)
-{
-    _private->executor = executor;
-}
-
 Status Polygonizer::Private::prepareBlocks(const glm::dvec3& origin)
 {
     if (!blocksCurrent || blocks.origin() != origin) {
@@ -247,7 +242,7 @@ Status Polygonizer::Private::cut(const SurfaceLattice& lattice, double eyeDepth,
     if (!std::isnan(eyeDepth)) orderByDistance(surfaceDepths, eyeDepth, order);
     plan.order = order.data();
 
-    if (Status s = slicer.run(plan, executor, out); !s) return s;
+    if (Status s = slicer.run(plan, out); !s) return s;
     out.surfaceCount = plan.surfaceCount;
     out.brickCount = plan.brickCount;
     out.spacing = lattice.spacing;

@@ -15,7 +15,6 @@
 namespace osgVolumizer {
 namespace core {
 
-class Executor;
 class SurfaceFamily;
 
 /// A run of faces, and the indices that they use.
@@ -79,9 +78,6 @@ public:
     /// In the voxel frame: applied to the explicit voxel coordinates where the format has them,
     /// else to the positions. None means one brick without clipping. On failure the old ones stay.
     Status setClipBoxes(const std::vector<Box3d>& clipBoxes);
-    /// Threads to share the work with; null (default) means the calling thread alone. The faces are
-    /// the same to the bit whatever the number of threads. Kept by reference.
-    void setExecutor(Executor* executor);
 
     /// Expects a tetra set. VALUE_INVALID for parameters (see SamplingParameters::validate),
     /// SINGULAR_MATRIX, TOO_LARGE for more than 2^24 pairs of surface and brick: `out` is unchanged

@@ -24,20 +24,6 @@ glm::dvec3 PolygonSet::normal(std::size_t face) const
     return n;
 }
 
-double PolygonSet::area() const
-{
-    double r = 0.0;
-    for (std::size_t f = 0; f < faceCount(); ++f)
-        r += 0.5 * glm::length(normal(f));
-    return r;
-}
-
-void PolygonSet::clear()
-{
-    values.clear();
-    faceOffsets.assign(1, 0);
-}
-
 void PolygonSet::append(const RecordPolygon& polygon)
 {
     if (polygon.size() < 3) return;
@@ -53,25 +39,6 @@ void PolygonSet::copyFace(std::size_t face, RecordPolygon& polygon) const
     for (std::size_t i = 0; i < size(face); ++i)
         std::copy(record(face, i), record(face, i) + format.stride(), polygon.append());
     polygon.close();
-}
-
-void PolygonSet::appendTo(FaceSet& faces, const glm::dvec3& origin) const
-{
-    if (faces.faceOffsets.empty()) faces.faceOffsets.push_back(0);
-    const auto stride = static_cast<std::size_t>(format.stride());
-    const auto position = static_cast<std::size_t>(format.positionOffset());
-    const auto first = static_cast<std::uint32_t>(faces.vertexCount());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::size_t field = i % stride;
-        const bool shift = field >= position && field < position + 3;
-        const double o = shift ? origin[static_cast<int>(field - position)] : 0.0;
-        faces.vertices.push_back(static_cast<float>(values[i] - o));
-    }
-    const std::uint32_t firstIndex = faces.faceOffsets.back();
-    for (std::uint32_t i = 0; i < faceOffsets.back(); ++i)
-        faces.indices.push_back(first + i);
-    for (std::size_t f = 1; f < faceOffsets.size(); ++f)
-        faces.faceOffsets.push_back(firstIndex + faceOffsets[f]);
 }
 
 Status sample(const TetraSet& set, std::size_t tetrahedron, const SurfaceFamily& family,
@@ -138,50 +105,6 @@ void clip(const PolygonSet& in, const std::vector<Plane>& halfSpaces, PolygonSet
         for (const Plane& plane : halfSpaces)
             if (polygon.size() > 0) polygon.clipPlane(in.format.positionOffset(), plane);
         out.append(polygon);
-    }
-}
-
-void slice(const ConvexPolytope& polytope, const Plane& plane, std::vector<glm::dvec3>& polygon)
-{
-    polygon.clear();
-    // Walks around the cut from face to face: in each it enters over one edge and leaves over
-    // another, which belongs to the next face as well. Seen from above the plane, the polytope's
-    // faces follow each other counter-clockwise if each is crossed from its descending edge on.
-    struct Crossing
-    {
-        std::uint32_t from[2], to[2]; ///< vertices below and above, at entry and exit
-    };
-    std::vector<Crossing> crossings;
-    const auto above = [&](std::uint32_t v) { return plane.distance(polytope.vertices[v]) > 0.0; };
-    for (std::size_t f = 0; f < polytope.faceCount(); ++f) {
-        Crossing c{};
-        int found = 0;
-        const std::uint32_t first = polytope.faceOffsets[f], end = polytope.faceOffsets[f + 1];
-        for (std::uint32_t i = first; i < end; ++i) {
-            const std::uint32_t a = polytope.indices[i];
-            const std::uint32_t b = polytope.indices[i + 1 == end ? first : i + 1];
-            if (above(a) == above(b)) continue;
-            // With outward faces, the edge that goes down is where the walk enters.
-            const int which = above(a) ? 0 : 1;
-            c.from[which] = above(a) ? b : a;
-            c.to[which] = above(a) ? a : b;
-            ++found;
-        }
-        if (found == 2) crossings.push_back(c);
-    }
-    if (crossings.size() < 3) return;
-    std::size_t at = 0;
-    for (std::size_t step = 0; step < crossings.size(); ++step) {
-        const Crossing& c = crossings[at];
-        const glm::dvec3 p = polytope.vertices[c.from[0]], q = polytope.vertices[c.to[0]];
-        const double dp = plane.distance(p), dq = plane.distance(q);
-        polygon.push_back(p + (dp / (dp - dq)) * (q - p));
-        std::size_t next = 0;
-        while (next < crossings.size() &&
-               (crossings[next].from[0] != c.from[1] || crossings[next].to[0] != c.to[1]))
-            ++next;
-        if (next == crossings.size() || next == 0) return;
-        at = next;
     }
 }
 

@@ -3,8 +3,6 @@
 #include "../Export.h"
 #include "../Status.h"
 #include "../geometry/Box.h"
-#include "../geometry/ConvexPolytope.h"
-#include "../geometry/FaceSet.h"
 #include "../geometry/TetraSet.h"
 #include "SurfaceFamily.h"
 
@@ -38,12 +36,8 @@ struct OSGVOLUMIZER_CORE_EXPORT PolygonSet
     }
     /// Twice the area, as a vector along the normal.
     glm::dvec3 normal(std::size_t face) const;
-    double area() const;
-    void clear();
     void append(const RecordPolygon& polygon);
     void copyFace(std::size_t face, RecordPolygon& polygon) const;
-    /// Appends all faces in single precision, positions less `origin`. Expects the same format.
-    void appendTo(FaceSet& faces, const glm::dvec3& origin = glm::dvec3(0.0)) const;
 };
 
 /// Cuts one tetrahedron by surfaces of a family: appends a face for each of the depths at which it
@@ -60,13 +54,6 @@ OSGVOLUMIZER_CORE_EXPORT void clip(const PolygonSet& in, const Box3d& box, Polyg
 /// Appends the parts of all faces inside a convex set of half-spaces of the position frame.
 OSGVOLUMIZER_CORE_EXPORT void clip(const PolygonSet& in, const std::vector<Plane>& halfSpaces,
                                    PolygonSet& out);
-
-/// sample() and clip() in one, for convex primitives: the cross section of a polytope (such as a
-/// tetrahedron or box that is clipped already) with the plane, counter-clockwise about its normal.
-/// `polygon` is replaced; empty where they do not meet. Points are made from the end of an edge
-/// below the plane to the end above.
-OSGVOLUMIZER_CORE_EXPORT void slice(const ConvexPolytope& polytope, const Plane& plane,
-                                    std::vector<glm::dvec3>& polygon);
 
 } // namespace core
 } // namespace osgVolumizer

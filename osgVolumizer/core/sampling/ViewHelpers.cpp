@@ -1,7 +1,5 @@
 #include "ViewHelpers.h"
 
-#include "Polygonize.h"
-
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -26,8 +24,8 @@ glm::dvec4 row(const glm::dmat4& m, int r)
     return {m[0][r], m[1][r], m[2][r], m[3][r]};
 }
 
-/// Determinant over the product of the column lengths, in [0, 1]. Columns are normalised first, so
-/// that nothing overflows.
+/// Determinant over the product of the column lengths, in [0, 1], whatever the scale of each axis.
+/// Columns are normalised first, so that nothing overflows.
 double relativeVolume(const glm::dmat3& m)
 {
     glm::dmat3 n;
@@ -38,6 +36,13 @@ double relativeVolume(const glm::dmat3& m)
         n[c] = scaled / glm::length(scaled);
     }
     return std::abs(glm::determinant(n));
+}
+
+/// Whether the matrix has no usable inverse.
+bool isSingular(const glm::dmat3& m)
+{
+    // The negated test also catches NaN.
+    return !(relativeVolume(m) > SINGULAR);
 }
 
 /// The vector that is orthogonal to three vectors of four dimensions.
@@ -71,12 +76,6 @@ bool isAffine(const glm::dmat4& m)
 }
 
 } // namespace
-
-bool isSingular(const glm::dmat3& m)
-{
-    // The negated test also catches NaN.
-    return !(relativeVolume(m) > SINGULAR);
-}
 
 Result<glm::dmat4> fromEye(const View& view)
 {
@@ -116,13 +115,6 @@ Result<glm::dvec4> eyePosition(const View& view)
     return glm::dvec4(glm::normalize(direction), 0.0);
 }
 
-Result<glm::dvec3> viewDirection(const View& view)
-{
-    const Result<glm::dmat4> inverse = fromEye(view);
-    if (!inverse) return inverse.status;
-    return glm::normalize(-glm::dvec3((*inverse)[2]));
-}
-
 Result<glm::dvec3> viewDirectionAt(const View& view, const glm::dvec3& position)
 {
     const Result<glm::dvec4> eye = eyePosition(view);
@@ -130,7 +122,7 @@ Result<glm::dvec3> viewDirectionAt(const View& view, const glm::dvec3& position)
     if (eye->w == 0.0) return -glm::dvec3(*eye);
     const glm::dvec3 ray = position - glm::dvec3(*eye);
     const double length = glm::length(ray);
-    if (!(length > 0.0)) return viewDirection(view);
+    if (!(length > 0.0)) return glm::normalize(-glm::dvec3((*fromEye(view))[2]));
     return ray / length;
 }
 
@@ -163,49 +155,6 @@ Result<NearFar> nearFar(const glm::dmat4& projection)
     r.farDepth = farSlope == 0.0 ? std::numeric_limits<double>::infinity() : (zw - ww) / farSlope;
     if (!(r.nearDepth < r.farDepth)) return singular("projection");
     return r;
-}
-
-Result<double> projectedArea(const FaceSet& faces, const View& view)
-{
-    if (const Result<glm::dvec4> eye = eyePosition(view); !eye) return eye.status;
-    const glm::dmat4 toClip = view.projection * view.toEye;
-    const auto stride = static_cast<std::size_t>(faces.format.stride());
-    const auto offset = static_cast<std::size_t>(faces.format.positionOffset());
-    const double nearest = 1e-9; // of the largest w of the face: keeps the division finite
-    double area = 0.0;
-    std::vector<glm::dvec4> clip;
-    for (std::size_t f = 0; f + 1 < faces.faceOffsets.size(); ++f) {
-        clip.clear();
-        double limit = 0.0;
-        for (std::uint32_t i = faces.faceOffsets[f]; i < faces.faceOffsets[f + 1]; ++i) {
-            const float* p = faces.vertices.data() + faces.indices[i] * stride + offset;
-            clip.push_back(toClip * glm::dvec4(p[0], p[1], p[2], 1.0));
-            limit = std::max(limit, std::abs(clip.back().w));
-        }
-        limit *= nearest;
-        // Shoelace formula over the part with w >= limit.
-        glm::dvec2 first(0.0), previous(0.0);
-        bool started = false;
-        double twice = 0.0;
-        const auto add = [&](const glm::dvec4& v) {
-            const glm::dvec2 p = glm::dvec2(v) / v.w;
-            if (!started)
-                first = p;
-            else
-                twice += previous.x * p.y - previous.y * p.x;
-            previous = p;
-            started = true;
-        };
-        for (std::size_t i = 0; i < clip.size(); ++i) {
-            const glm::dvec4 a = clip[i], b = clip[(i + 1) % clip.size()];
-            const bool aIn = a.w >= limit, bIn = b.w >= limit;
-            if (aIn && limit > 0.0) add(a);
-            if (aIn != bIn) add(a + (b - a) * ((limit - a.w) / (b.w - a.w)));
-        }
-        if (started) twice += previous.x * first.y - previous.y * first.x;
-        area += 0.5 * std::abs(twice);
-    }
-    return area / 4.0; // normalised device coordinates span 2 x 2
 }
 
 } // namespace core

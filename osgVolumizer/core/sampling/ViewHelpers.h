@@ -2,17 +2,14 @@
 
 #include "../Export.h"
 #include "../Status.h"
-#include "../geometry/Box.h"
 #include "View.h"
 
-#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 namespace osgVolumizer {
 namespace core {
-
-struct FaceSet;
 
 /// A voxel axis: 0, 1 or 2, and whether the view goes up (+1) or down (-1) along it.
 struct ViewAxis
@@ -28,14 +25,11 @@ struct NearFar
     double farDepth = 0.0;
 };
 
-/// Whether the matrix has no usable inverse. Independent of scale and of translation: the volume
-/// of the parallelepiped of the columns is compared with the product of their lengths (1e-12), so
-/// 1e-6 or 1e6 times the unit matrix is regular, and so is any scale per axis. NaN and infinite
-/// values are singular.
-OSGVOLUMIZER_CORE_EXPORT bool isSingular(const glm::dmat3& m);
-
 /// The affine inverse of `toEye`; SINGULAR_MATRIX where there is none, or where the last row is not
 /// (0, 0, 0, 1) up to a few roundings (1e-14; its first three entries relative to their columns).
+/// Scale is no reason: the volume of the parallelepiped of the axes is compared with the product of
+/// their lengths (1e-12), so 1e-6 or 1e6 times the unit matrix is regular, and so is any scale per
+/// axis. NaN and infinite values are singular.
 OSGVOLUMIZER_CORE_EXPORT Result<glm::dmat4> fromEye(const View& view);
 
 /// Centre of projection in the position frame, homogeneous: w = 1, or w = 0 for a parallel
@@ -43,11 +37,8 @@ OSGVOLUMIZER_CORE_EXPORT Result<glm::dmat4> fromEye(const View& view);
 /// are ordinary cases. SINGULAR_MATRIX where either matrix is singular.
 OSGVOLUMIZER_CORE_EXPORT Result<glm::dvec4> eyePosition(const View& view);
 
-/// Unit direction in which the view looks (the eye frame's -z), in the position frame.
-OSGVOLUMIZER_CORE_EXPORT Result<glm::dvec3> viewDirection(const View& view);
-
-/// Unit direction of the ray of sight through `position`, in the position frame; the view direction
-/// where `position` is the eye itself.
+/// Unit direction of the ray of sight through `position`, in the position frame; the direction in
+/// which the view looks (the eye frame's -z) where `position` is the eye itself.
 OSGVOLUMIZER_CORE_EXPORT Result<glm::dvec3> viewDirectionAt(const View& view,
                                                             const glm::dvec3& position);
 
@@ -59,10 +50,6 @@ OSGVOLUMIZER_CORE_EXPORT Result<ViewAxis> closestAxis(const View& view, const gl
 /// Near and far depth of the projection, perspective, orthographic or off-axis, from the planes
 /// z = -w and z = w. SINGULAR_MATRIX where the projection has no such planes.
 OSGVOLUMIZER_CORE_EXPORT Result<NearFar> nearFar(const glm::dmat4& projection);
-
-/// Area of all faces as seen in the view, in units of the viewport's area (which is 1), without
-/// clipping to it. Faces that reach behind the eye count with the part of them that is in front.
-OSGVOLUMIZER_CORE_EXPORT Result<double> projectedArea(const FaceSet& faces, const View& view);
 
 } // namespace core
 } // namespace osgVolumizer

@@ -11,7 +11,6 @@ namespace core {
 namespace {
 
 constexpr double LEAST_TRANSPARENCY = 1.0 / 16777216.0; // as in extinctionFromOpacity()
-constexpr double HALF_STEP = 0.7071067811865476;        // root of a half
 
 /// Moments of -ln(1 + r t) over t in [-1, 1]: its mean, and the mean of t times it.
 struct LogMoments
@@ -71,121 +70,6 @@ double valueOf(int i, int count, double low, double high)
 {
     const double t = static_cast<double>(i) / (count - 1);
     return (1.0 - t) * low + t * high;
-}
-
-/// A piece of the value axis on which colour and opacity are linear.
-struct Piece
-{
-    double low, high;
-    double extinction; ///< mean
-    glm::dvec3 colorLow, colorHigh;
-    glm::dvec3 bulge; ///< mean colour, weighted by extinction, less the mean of the ends
-};
-
-/// Colour and opacity of a segment cut into pieces, front to back.
-class SegmentMarch
-{
-public:
-    explicit SegmentMarch(double lengthUnits) : _length(lengthUnits) {}
-    /// A piece of `fraction` of the length. The colour is taken as a parabola in optical depth,
-    /// which has the piece's ends and mean.
-    void add(double extinction, const glm::dvec3& front, const glm::dvec3& back,
-             const glm::dvec3& bulge, double fraction)
-    {
-        const double depth = extinction * fraction * _length;
-        const double opacity = -std::expm1(-depth);
-        // Moments of depth * exp(-depth x) over [0, 1]; series where the closed forms cancel.
-        double first = depth * (1.0 / 2.0 - depth * (1.0 / 3.0 - depth / 8.0));
-        double second = depth * (1.0 / 3.0 - depth * (1.0 / 4.0 - depth / 10.0));
-        if (depth > 1e-2) {
-            first = opacity / depth - (1.0 - opacity);
-            second = 2.0 * first / depth - (1.0 - opacity);
-        }
-        _color += std::exp(-_depth) *
-                  (opacity * front + first * (back - front) + 6.0 * (first - second) * bulge);
-        _depth += depth;
-    }
-    glm::vec4 result() const { return glm::vec4(glm::dvec4(_color, -std::expm1(-_depth))); }
-
-private:
-    double _length;
-    double _depth = 0.0;
-    glm::dvec3 _color{0.0};
-};
-
-/// Where pieces end: at the texels of a table, at the function's points, and wherever transparency
-/// or opacity has fallen by the root of two, so that the extinction of a piece varies little.
-std::vector<double> pieceEnds(const TransferFunction& function, int count, double low, double high)
-{
-    std::vector<double> ends;
-    ends.reserve(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i)
-        ends.push_back(valueOf(i, count, low, high));
-    const auto& points = function.points();
-    const auto add = [&](double v) {
-        if (v > low && v < high) ends.push_back(v);
-    };
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        add(points[i].value);
-        if (i == 0) continue;
-        const double ua = 1.0 - points[i - 1].color.a, ub = 1.0 - points[i].color.a;
-        const auto addTransparency = [&](double u) {
-            if ((u - ua) * (u - ub) < 0.0)
-                add(points[i - 1].value +
-                    (points[i].value - points[i - 1].value) * (u - ua) / (ub - ua));
-        };
-        for (double u = HALF_STEP; u >= LEAST_TRANSPARENCY; u *= HALF_STEP)
-            addTransparency(u);
-        for (double alpha = 0.25; alpha > 0.01; alpha *= HALF_STEP)
-            addTransparency(1.0 - alpha);
-    }
-    std::sort(ends.begin(), ends.end());
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    return ends;
-}
-
-std::vector<Piece> cutPieces(const TransferFunction& function, int count, double low, double high)
-{
-    const std::vector<double> ends = pieceEnds(function, count, low, high);
-    const TransferIntegral integral(function);
-    std::vector<Piece> pieces;
-    for (std::size_t i = 1; i < ends.size(); ++i) {
-        const glm::dvec4 mean = integral.mean(ends[i - 1], ends[i]);
-        Piece p{ends[i - 1], ends[i], mean.a, {}, {}, {}};
-        // A jump at the high end belongs to the next piece: its colour here is the limit from
-        // below.
-        const glm::dvec3 middle(function.evaluate(0.5 * (p.low + p.high)));
-        p.colorLow = glm::dvec3(function.evaluate(p.low));
-        p.colorHigh = 2.0 * middle - p.colorLow;
-        p.bulge = mean.a > 0.0 ? glm::dvec3(mean) / mean.a - middle : glm::dvec3(0.0);
-        pieces.push_back(p);
-    }
-    return pieces;
-}
-
-glm::vec4 segment(const TransferFunction& function, const std::vector<Piece>& pieces, double front,
-                  double back, double lengthUnits)
-{
-    SegmentMarch march(lengthUnits);
-    if (front == back) {
-        const glm::dvec4 c = function.evaluate(front);
-        march.add(extinctionFromOpacity(c.a), glm::dvec3(c), glm::dvec3(c), glm::dvec3(0.0), 1.0);
-        return march.result();
-    }
-    const auto first = std::lower_bound(pieces.begin(), pieces.end(), std::min(front, back),
-                                        [](const Piece& p, double v) { return p.low < v; });
-    const auto end = std::lower_bound(first, pieces.end(), std::max(front, back),
-                                      [](const Piece& p, double v) { return p.low < v; });
-    const double scale = 1.0 / std::fabs(back - front);
-    if (front < back)
-        for (auto p = first; p != end; ++p)
-            march.add(p->extinction, p->colorLow, p->colorHigh, p->bulge,
-                      (p->high - p->low) * scale);
-    else
-        for (auto p = end; p-- != first;)
-            march.add(p->extinction, p->colorHigh, p->colorLow, p->bulge,
-                      (p->high - p->low) * scale);
-    return march.result();
 }
 
 } // namespace
@@ -289,43 +173,6 @@ WindowError windowError(const TransferFunction& function, double low, double hig
             last = p.value;
         }
     return worst;
-}
-
-PreIntegratedTable preIntegrate(const TransferFunction& function, int count, double low,
-                                double high)
-{
-    PreIntegratedTable table;
-    table.count = std::max(count, 2);
-    const std::size_t n = static_cast<std::size_t>(table.count);
-    table.texels.resize(n * n);
-    const TransferIntegral integral(function);
-    for (int back = 0; back < table.count; ++back)
-        for (int front = 0; front <= back; ++front) {
-            const glm::vec4 mean(integral.mean(valueOf(front, table.count, low, high),
-                                               valueOf(back, table.count, low, high)));
-            const std::size_t f = static_cast<std::size_t>(front),
-                              b = static_cast<std::size_t>(back);
-            table.texels[f + n * b] = mean;
-            table.texels[b + n * f] = mean;
-        }
-    return table;
-}
-
-PreIntegratedTable preIntegrateSegment(const TransferFunction& function, int count, double low,
-                                       double high, double lengthUnits)
-{
-    PreIntegratedTable table;
-    table.count = std::max(count, 2);
-    const std::size_t n = static_cast<std::size_t>(table.count);
-    table.texels.resize(n * n);
-
-    const std::vector<Piece> pieces = cutPieces(function, table.count, low, high);
-    for (int back = 0; back < table.count; ++back)
-        for (int front = 0; front < table.count; ++front)
-            table.texels[static_cast<std::size_t>(front) + n * static_cast<std::size_t>(back)] =
-                segment(function, pieces, valueOf(front, table.count, low, high),
-                        valueOf(back, table.count, low, high), lengthUnits);
-    return table;
 }
 
 } // namespace core

@@ -47,28 +47,5 @@ struct WindowError
 OSGVOLUMIZER_CORE_EXPORT WindowError windowError(const TransferFunction& function, double low,
                                                  double high, double width);
 
-/// A pre-integrated table: texel (front i, back j), front fastest, at values low +
-/// i/(count-1)*(high-low).
-struct PreIntegratedTable
-{
-    int count = 0;
-    std::vector<glm::vec4> texels;
-};
-
-/// Mean extinction per unit (alpha) and mean extinction times colour (rgb) of a segment, whatever
-/// its length: without self-attenuation the segment adds rgb/alpha * (1 - exp(-alpha*length)).
-/// Engel, Kraus and Ertl, "High-Quality Pre-Integrated Volume Rendering Using Hardware-Accelerated
-/// Pixel Shading", Graphics Hardware 2001. count >= 2, cost O(count^2).
-OSGVOLUMIZER_CORE_EXPORT PreIntegratedTable preIntegrate(const TransferFunction& function,
-                                                         int count, double low, double high);
-
-/// Premultiplied colour and opacity of a segment `lengthUnits` long, attenuation within the segment
-/// included (the same paper). Exact opacity; colour to 2e-5 from 33 texels on, for segments up to 5
-/// units. Not symmetric: light from the front counts more. Cost O(count^2 (count + points)): up to
-/// 256 at a change of table.
-OSGVOLUMIZER_CORE_EXPORT PreIntegratedTable preIntegrateSegment(const TransferFunction& function,
-                                                                int count, double low, double high,
-                                                                double lengthUnits);
-
 } // namespace core
 } // namespace osgVolumizer

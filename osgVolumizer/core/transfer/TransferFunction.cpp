@@ -94,14 +94,6 @@ double TransferFunction::minimumOpacity(double low, double high) const
     return extremeOpacity(low, high, [](double a, double b) { return std::min(a, b); });
 }
 
-bool TransferFunction::hasJumps() const
-{
-    for (std::size_t i = 1; i < _points.size(); ++i)
-        if (_points[i].value == _points[i - 1].value && _points[i].color != _points[i - 1].color)
-            return true;
-    return false;
-}
-
 TransferFunction TransferFunction::mapped(double scale, double offset) const
 {
     TransferFunction function(*this);

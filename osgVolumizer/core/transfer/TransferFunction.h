@@ -37,8 +37,6 @@ public:
     double maximumOpacity(double low, double high) const;
     /// Smallest likewise; 0 where there is no interval.
     double minimumOpacity(double low, double high) const;
-    /// Whether some value is taken by two points of different colour.
-    bool hasJumps() const;
     /// Values mapped by value -> scale * value + offset, scale > 0.
     TransferFunction mapped(double scale, double offset) const;
 

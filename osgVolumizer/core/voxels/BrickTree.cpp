@@ -137,13 +137,6 @@ TreeBrick BrickTree::brick(std::int64_t index) const
     return brick;
 }
 
-std::int64_t BrickTree::parent(std::int64_t number) const
-{
-    const int level = levelOf(number);
-    if (level + 1 >= levelCount()) return -1;
-    return index(level + 1, coordinatesOf(level, number) / 2);
-}
-
 void BrickTree::addFarToNear(int level, const glm::ivec3& first, const glm::ivec3& last,
                              const glm::dvec4& eyeVoxel, std::vector<std::int64_t>& bricks) const
 {

@@ -56,8 +56,6 @@ public:
     std::int64_t brickCount(int level) const;
     std::int64_t index(int level, const glm::ivec3& coordinates) const;
     TreeBrick brick(std::int64_t index) const;
-    /// -1 for a brick of the coarsest level.
-    std::int64_t parent(std::int64_t index) const;
     /// Bricks of the coarsest level, and the children of a brick, far to near along any ray from
     /// the eye, wherever it is. \param eyeVoxel homogeneous: w = 0 is a direction towards the eye
     std::vector<std::int64_t> roots(const glm::dvec4& eyeVoxel) const;

@@ -11,28 +11,20 @@ namespace render {
 
 namespace {
 
-// Triangles of one face as a fan. PRIMITIVE faces each have a thickness of their own, so their
-// vertices are written out again with it.
+// Triangles of one PRIMITIVE face as a fan. Each has a thickness of its own, so their vertices are
+// written out again with it.
 void appendFace(const core::PolygonizedFaces& slices, std::uint32_t face, VolumeMesh& mesh)
 {
-    const core::FaceSet& faces = slices.faces;
-    const std::uint32_t begin = faces.faceOffsets[face], end = faces.faceOffsets[face + 1];
-    const bool ownSpacing = !slices.faceSpacings.empty();
-    const auto vertex = [&](std::uint32_t i) {
-        if (!ownSpacing) return faces.indices[i];
-        return static_cast<unsigned>(mesh.vertices.size() / static_cast<std::size_t>(mesh.stride)) -
-               (end - begin) + (i - begin);
-    };
-    if (ownSpacing) {
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const float* record = faces.record(faces.indices[i]);
-            mesh.vertices.insert(mesh.vertices.end(), record, record + faces.format.stride());
-            mesh.vertices.push_back(slices.faceSpacings[face]);
-        }
+    const core::FaceView corners = slices.faces.face(face);
+    const auto first =
+        static_cast<unsigned>(mesh.vertices.size() / static_cast<std::size_t>(mesh.stride));
+    for (const std::uint32_t corner : corners) {
+        const float* record = slices.faces.record(corner);
+        mesh.vertices.insert(mesh.vertices.end(), record, record + slices.faces.format.stride());
+        mesh.vertices.push_back(slices.faceSpacings[face]);
     }
-    for (std::uint32_t i = begin + 2; i < end; ++i)
-        mesh.indices.insert(mesh.indices.end(), {vertex(begin), vertex(i - 1), vertex(i)});
-    ++mesh.faceCount;
+    for (unsigned i = 2; i < corners.size(); ++i)
+        mesh.indices.insert(mesh.indices.end(), {first, first + i - 1, first + i});
 }
 
 // Adds the faces of one surface in one brick to the last batch, or to a new one.
@@ -49,8 +41,12 @@ void appendRange(const core::PolygonizedFaces& slices, int surface, int brick, b
         triangles.bricks.back() = brick;
     }
     const core::FaceRange& range = slices.range(surface, brick);
-    for (std::uint32_t f = 0; f < range.faceCount; ++f)
-        appendFace(slices, range.firstFace + f, mesh);
+    if (slices.faceSpacings.empty())
+        slices.faces.triangulate(range.firstFace, range.faceCount, mesh.indices);
+    else
+        for (std::uint32_t f = 0; f < range.faceCount; ++f)
+            appendFace(slices, range.firstFace + f, mesh);
+    mesh.faceCount += range.faceCount;
     BrickBatch& batch = mesh.batches.back();
     batch.indexCount = static_cast<unsigned>(mesh.indices.size()) - batch.firstIndex;
 }

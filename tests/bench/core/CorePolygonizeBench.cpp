@@ -2,7 +2,6 @@
 // faces have, in the same run. Counters: polygons per second, bytes per second, and the part of the
 // speed of memcpy. Arguments of the program are those of Google Benchmark.
 
-#include "osgVolumizer/core/Parallel.h"
 #include "osgVolumizer/core/sampling/FaceCache.h"
 #include "tests/core/TestGeometry.h"
 
@@ -24,12 +23,11 @@ std::size_t bytesOf(const PolygonizedFaces& f)
            (f.faces.indices.size() + f.faces.faceOffsets.size()) * sizeof(std::uint32_t);
 }
 
-/// Processor time of this thread: wall time on a machine that others use says little. With several
-/// threads only wall time counts.
-double now(int threads = 1)
+/// Processor time of this thread: wall time on a machine that others use says little.
+double now()
 {
     timespec t{};
-    clock_gettime(threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &t);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
@@ -64,11 +62,9 @@ View benchView()
 }
 
 void run(benchmark::State& state, TetraSet tetra, const std::vector<Box3d>& boxes,
-         SamplingParameters parameters, int threads = 1)
+         SamplingParameters parameters)
 {
     Polygonizer polygonizer;
-    ThreadPool pool(threads);
-    if (threads > 1) polygonizer.setExecutor(&pool);
     PolygonizedFaces out;
     if (!polygonizer.setTetraSet(std::make_shared<const TetraSet>(std::move(tetra))).ok() ||
         !polygonizer.setClipBoxes(boxes).ok() ||
@@ -78,10 +74,10 @@ void run(benchmark::State& state, TetraSet tetra, const std::vector<Box3d>& boxe
     }
     double best = 1e9;
     for (auto _ : state) {
-        const double start = now(threads);
+        const double start = now();
         const Status status = polygonizer.polygonize(benchView(), parameters, out);
         benchmark::DoNotOptimize(status.code);
-        best = std::min(best, now(threads) - start);
+        best = std::min(best, now() - start);
     }
     const auto polygons = static_cast<double>(out.faces.faceCount());
     const auto bytes = static_cast<double>(bytesOf(out));
@@ -91,18 +87,13 @@ void run(benchmark::State& state, TetraSet tetra, const std::vector<Box3d>& boxe
     state.counters["of_memcpy"] = bytes / best / memcpySpeed(bytesOf(out));
 }
 
-/// Threads, and cells along an axis: with 16 of them all stays in the second-level cache.
+/// Cells along an axis: with 16 of them all stays in the second-level cache.
 void gridV3F(benchmark::State& state)
 {
-    const int cells = static_cast<int>(state.range(1));
-    run(state, testing::makeGrid(cells, cells), {}, {}, static_cast<int>(state.range(0)));
+    const int cells = static_cast<int>(state.range(0));
+    run(state, testing::makeGrid(cells, cells), {}, {});
 }
-BENCHMARK(gridV3F)
-    ->Args({1, 64})
-    ->Args({2, 64})
-    ->Args({1, 16})
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
+BENCHMARK(gridV3F)->Arg(64)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void gridBricks(benchmark::State& state)
 {
@@ -134,7 +125,6 @@ void unchangedView(benchmark::State& state)
     const View view = benchView();
     for (auto _ : state)
         benchmark::DoNotOptimize(cache.faces(1, set, boxes, view, SamplingParameters()));
-    state.counters["polygonizations"] = static_cast<double>(cache.polygonizations());
 }
 BENCHMARK(unchangedView)->Unit(benchmark::kNanosecond);
 

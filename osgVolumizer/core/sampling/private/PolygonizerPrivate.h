@@ -16,7 +16,6 @@ struct Polygonizer::Private
     std::shared_ptr<const TetraSet> tetraSet;
     Box3d bounds;
     BoxIndex boxes; // as set
-    Executor* executor = nullptr;
 
     TetraBlocks blocks; // of the tetra set, about an origin
     BoxIndex localBoxes;

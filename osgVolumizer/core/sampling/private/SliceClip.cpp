@@ -11,50 +11,50 @@ namespace core {
 
 namespace {
 
-void append(const SlicePlan& plan, std::size_t bin, double spacing, Slicer::Chunk& chunk)
+void append(const SlicePlan& plan, std::size_t bin, double spacing, Slicer::Work& work)
 {
     const std::size_t stride = plan.blocks->recordSize();
-    const RecordPolygon& face = chunk.polygon;
-    growLarge(chunk.vertices, chunk.valueCount + face.size() * stride, chunk.valueCount);
-    float* to = chunk.vertices.data() + chunk.valueCount;
-    chunk.valueCount += face.size() * stride;
+    const RecordPolygon& face = work.polygon;
+    growLarge(work.vertices, work.valueCount + face.size() * stride, work.valueCount);
+    float* to = work.vertices.data() + work.valueCount;
+    work.valueCount += face.size() * stride;
     for (std::size_t i = 0; i < face.size(); ++i) {
         const double* from = face.record(i);
         for (std::size_t k = 0; k < stride; ++k)
             *to++ = static_cast<float>(from[k]);
     }
-    chunk.bins.push_back(static_cast<std::uint32_t>(bin));
-    chunk.sizes.push_back(static_cast<std::uint16_t>(face.size()));
-    if (plan.primitive) chunk.spacings.push_back(static_cast<float>(spacing));
+    work.bins.push_back(static_cast<std::uint32_t>(bin));
+    work.sizes.push_back(static_cast<std::uint16_t>(face.size()));
+    if (plan.primitive) work.spacings.push_back(static_cast<float>(spacing));
 }
 
-void clipFace(const SlicePlan& plan, int surface, double spacing, Slicer::Chunk& chunk)
+void clipFace(const SlicePlan& plan, int surface, double spacing, Slicer::Work& work)
 {
     const std::size_t firstBin = static_cast<std::size_t>(surface - plan.firstSurface) *
                                  static_cast<std::size_t>(plan.brickCount);
     if (!plan.boxes || plan.boxes->boxes().empty()) {
-        append(plan, firstBin, spacing, chunk);
+        append(plan, firstBin, spacing, work);
         return;
     }
     const int field = plan.blocks->clipField();
-    RecordPolygon& polygon = chunk.polygon;
+    RecordPolygon& polygon = work.polygon;
     const Box3d extent = polygon.extent(field);
-    polygon.save(chunk.whole);
+    polygon.save(work.whole);
     bool cut = false;
     plan.boxes->visit(extent.min, extent.max, [&](int brick, bool needsClipping) {
         const std::size_t bin = firstBin + static_cast<std::size_t>(brick);
-        if (cut) polygon.restore(chunk.whole);
+        if (cut) polygon.restore(work.whole);
         cut = needsClipping;
         if (needsClipping)
             polygon.clipBox(field, plan.boxes->boxes()[static_cast<std::size_t>(brick)], extent);
-        if (polygon.size() >= 3) append(plan, bin, spacing, chunk);
+        if (polygon.size() >= 3) append(plan, bin, spacing, work);
     });
 }
 
 } // namespace
 
 void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block, std::uint32_t tetrahedron,
-               const double* layers, Slicer::Chunk& chunk)
+               const double* layers, Slicer::Work& work)
 {
     const TetraBlocks& blocks = *plan.blocks;
     const std::size_t stride = blocks.recordSize();
@@ -94,13 +94,13 @@ void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block, std::uint
         for (int i = 0; i < 4; ++i)
             mask |= passed[i] > k ? 1u << i : 0u;
         const TetraCase& which = TETRA_CASES[mask];
-        chunk.polygon.reset(static_cast<int>(stride));
+        work.polygon.reset(static_cast<int>(stride));
         for (std::size_t c = 0; c < static_cast<std::size_t>(which.count); ++c) {
             const std::size_t a = which.farVertex[c], b = which.nearVertex[c];
             const double t = (k + 0.5 - f[a]) / (f[b] - f[a]);
-            interpolate(records[a], records[b], t, stride, chunk.polygon.append());
+            interpolate(records[a], records[b], t, stride, work.polygon.append());
         }
-        chunk.polygon.close();
+        work.polygon.close();
         int surface = k;
         if (plan.primitive)
             surface =
@@ -108,15 +108,15 @@ void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block, std::uint
                          std::max(plan.firstSurface, static_cast<int>(low + (k + 0.5) / scale)));
         const double spacing = plan.lattice.spacing / scale;
         if (!plan.pieces) {
-            clipFace(plan, surface, spacing, chunk);
+            clipFace(plan, surface, spacing, work);
             continue;
         }
-        chunk.polygon.save(chunk.uncut);
+        work.polygon.save(work.uncut);
         for (const std::vector<Plane>& piece : *plan.pieces) {
-            chunk.polygon.restore(chunk.uncut);
-            for (std::size_t i = 0; i < piece.size() && chunk.polygon.size() > 0; ++i)
-                chunk.polygon.clipPlane(blocks.format().positionOffset(), piece[i]);
-            if (chunk.polygon.size() >= 3) clipFace(plan, surface, spacing, chunk);
+            work.polygon.restore(work.uncut);
+            for (std::size_t i = 0; i < piece.size() && work.polygon.size() > 0; ++i)
+                work.polygon.clipPlane(blocks.format().positionOffset(), piece[i]);
+            if (work.polygon.size() >= 3) clipFace(plan, surface, spacing, work);
         }
     }
 }

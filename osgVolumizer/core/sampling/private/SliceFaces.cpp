@@ -1,8 +1,6 @@
 #include "../../private/LargePages.h"
 #include "SliceScan.h"
 
-#include <algorithm>
-
 namespace osgVolumizer {
 namespace core {
 
@@ -19,42 +17,41 @@ void prefetch(const T* from, std::size_t count)
 
 } // namespace
 
-bool Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
+bool Slicer::emitBlocks(const SlicePlan& plan, PolygonizedFaces& out)
 {
+    Work& work = _work;
     const TetraBlocks& blocks = *plan.blocks;
     const std::size_t stride = blocks.recordSize();
     const auto brickCount = static_cast<std::uint32_t>(plan.brickCount);
     std::size_t entry = 0;
-    for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
-        const BlockFaces& faces = chunk.blockFaces[b - chunk.firstBlock];
+    for (std::size_t b = 0; b < blocks.blocks.size(); ++b) {
+        const BlockFaces& faces = work.blockFaces[b];
         if (entry == faces.endEntry) continue;
         const TetraBlocks::Block& block = blocks.blocks[b];
-        if (b + 1 < chunk.endBlock) {
+        if (b + 1 < blocks.blocks.size()) {
             const TetraBlocks::Block& next = blocks.blocks[b + 1];
             prefetch(_passed.data() + next.firstVertex, next.vertexCount);
             prefetch(_layers.data() + next.firstVertex, next.vertexCount);
             prefetch(blocks.record(next.firstVertex), next.vertexCount * stride);
         }
-        packPassed(_passed.data() + block.firstVertex, faces.highest, chunk);
+        packPassed(_passed.data() + block.firstVertex, faces.highest, work);
         listPoints(blocks.edges.data() + block.firstEdge, block.edgeCount,
-                   _passed.data() + block.firstVertex, chunk);
-        if (!_countPoints) {
-            if (chunk.vertexCount + chunk.pointCount > 0xffffffffu) return false;
-            growLarge(out.faces.vertices, (chunk.vertexCount + chunk.pointCount) * stride,
-                      chunk.vertexCount * stride);
-        }
-        writePoints(blocks, block, _layers.data() + block.firstVertex, faces.base, chunk,
-                    out.faces.vertices.data() + chunk.vertexCount * stride);
-        chunk.vertexCount += chunk.pointCount;
+                   _passed.data() + block.firstVertex, work);
+        if (work.vertexCount + work.pointCount > 0xffffffffu) return false;
+        growLarge(out.faces.vertices, (work.vertexCount + work.pointCount) * stride,
+                  work.vertexCount * stride);
+        writePoints(blocks, block, _layers.data() + block.firstVertex, faces.base, work,
+                    out.faces.vertices.data() + work.vertexCount * stride);
+        work.vertexCount += work.pointCount;
 
         Emission emission{};
-        emission.entries = chunk.entries.data() + entry;
-        emission.endEntries = chunk.entries.data() + faces.endEntry;
+        emission.entries = work.entries.data() + entry;
+        emission.endEntries = work.entries.data() + faces.endEntry;
         emission.tetraEdges = blocks.tetraEdges.data() + block.firstTetra;
-        emission.edgePoints = chunk.edgePoints.data();
+        emission.edgePoints = work.edgePoints.data();
         emission.brickCount = brickCount;
         emission.cursors =
-            chunk.fast.data() + std::size_t(faces.base - plan.firstSurface) * brickCount;
+            work.fast.data() + std::size_t(faces.base - plan.firstSurface) * brickCount;
         if (block.place == TetraBlocks::CLIP)
             emission.places = blocks.places.data() + block.firstTetra;
         else
@@ -64,25 +61,22 @@ bool Slicer::emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& ou
         emitFaces(emission);
         entry = faces.endEntry;
     }
-    if (!_countPoints) out.faces.vertices.resize(chunk.vertexCount * stride);
-    emitClipped(plan, chunk, out);
+    out.faces.vertices.resize(work.vertexCount * stride);
+    emitClipped(plan, out);
     return true;
 }
 
-void Slicer::emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const
+void Slicer::emitClipped(const SlicePlan& plan, PolygonizedFaces& out)
 {
-    const std::size_t stride = plan.blocks->recordSize();
-    if (_countPoints)
-        std::copy_n(chunk.vertices.data(), chunk.valueCount,
-                    out.faces.vertices.data() + chunk.clippedVertex * stride);
-    auto vertex = static_cast<std::uint32_t>(chunk.clippedVertex);
-    for (std::size_t f = 0; f < chunk.bins.size(); ++f) {
-        Count& cursor = chunk.clipped[chunk.bins[f]];
+    Work& work = _work;
+    std::uint32_t vertex = 0; // their points are in their place already
+    for (std::size_t f = 0; f < work.bins.size(); ++f) {
+        Count& cursor = work.clipped[work.bins[f]];
         out.faces.faceOffsets[faceCount(cursor)] = indexCount(cursor);
-        if (plan.primitive) out.faceSpacings[faceCount(cursor)] = chunk.spacings[f];
-        for (std::uint32_t k = 0; k < chunk.sizes[f]; ++k)
+        if (plan.primitive) out.faceSpacings[faceCount(cursor)] = work.spacings[f];
+        for (std::uint32_t k = 0; k < work.sizes[f]; ++k)
             out.faces.indices[indexCount(cursor) + k] = vertex++;
-        cursor += count(1, chunk.sizes[f]);
+        cursor += count(1, work.sizes[f]);
     }
 }
 

@@ -107,13 +107,13 @@ void writeBaseline(const double* records, std::size_t stride, const std::uint32_
 } // namespace
 
 void writePoints(const TetraBlocks& blocks, const TetraBlocks::Block& block, const double* layers,
-                 int base, Slicer::Chunk& chunk, float* to)
+                 int base, Slicer::Work& work, float* to)
 {
     const double* records = blocks.record(block.firstVertex);
-    const std::size_t stride = blocks.recordSize(), count = chunk.pointCount;
-    growLarge(chunk.weights, count);
-    std::uint32_t* const points = chunk.points.data();
-    double* const weights = chunk.weights.data();
+    const std::size_t stride = blocks.recordSize(), count = work.pointCount;
+    growLarge(work.weights, count);
+    std::uint32_t* const points = work.points.data();
+    double* const weights = work.weights.data();
 #if defined(OSGVOLUMIZER_DISPATCH_AVX2)
     if (avx2::available()) {
         const std::size_t done =

@@ -47,19 +47,19 @@ PassedRange listLayers(const SlicePlan& plan, const TetraBlocks::Block& block, i
     return range;
 }
 
-void packPassed(const int* passed, int highest, Slicer::Chunk& chunk)
+void packPassed(const int* passed, int highest, Slicer::Work& work)
 {
-    chunk.hasPassedBytes = false;
+    work.hasPassedBytes = false;
 #if defined(OSGVOLUMIZER_DISPATCH_AVX2)
     if (highest > 0xff || !avx512::available()) return;
-    avx512::packPassed(passed, chunk);
-    chunk.hasPassedBytes = true;
+    avx512::packPassed(passed, work);
+    work.hasPassedBytes = true;
 #else
     (void)passed, (void)highest;
 #endif
 }
 
-void listFace(const TetraBlocks::Tetra& v, std::uint32_t t, const int* passed, Slicer::Chunk& chunk)
+void listFace(const TetraBlocks::Tetra& v, std::uint32_t t, const int* passed, Slicer::Work& work)
 {
     const int a = passed[v.v[0]], b = passed[v.v[1]], c = passed[v.v[2]], d = passed[v.v[3]];
     const int low = std::min(std::min(a, b), std::min(c, d));
@@ -69,77 +69,66 @@ void listFace(const TetraBlocks::Tetra& v, std::uint32_t t, const int* passed, S
             (a > k ? 1u : 0u) | (b > k ? 2u : 0u) | (c > k ? 4u : 0u) | (d > k ? 8u : 0u);
         return static_cast<std::uint32_t>(k) << 14 | t << 4 | mask;
     };
-    growLarge(chunk.entries, chunk.entryCount + n + 2, chunk.entryCount);
-    std::uint32_t* e = chunk.entries.data() + chunk.entryCount;
+    growLarge(work.entries, work.entryCount + n + 2, work.entryCount);
+    std::uint32_t* e = work.entries.data() + work.entryCount;
     e[0] = entry(low);
     e[1] = entry(low + 1);
     for (std::size_t k = 2; k < n; ++k)
         e[k] = entry(low + static_cast<int>(k));
-    chunk.entryCount += n;
+    work.entryCount += n;
 }
 
-void listEdge(const TetraBlocks::Edge& e, std::uint32_t i, const int* passed, Slicer::Chunk& chunk)
+void listEdge(const TetraBlocks::Edge& e, std::uint32_t i, const int* passed, Slicer::Work& work)
 {
     const int a = passed[e.a], b = passed[e.b];
     const auto low = static_cast<std::uint32_t>(std::min(a, b));
     const auto n = static_cast<std::uint32_t>(std::abs(a - b));
     const std::uint32_t ends =
         a < b ? e.a | std::uint32_t(e.b) << 8 : e.b | std::uint32_t(e.a) << 8;
-    growLarge(chunk.points, chunk.pointCount + n + 2, chunk.pointCount);
-    std::uint32_t* to = chunk.points.data() + chunk.pointCount;
+    growLarge(work.points, work.pointCount + n + 2, work.pointCount);
+    std::uint32_t* to = work.points.data() + work.pointCount;
     to[0] = low << 16 | ends;
     to[1] = (low + 1) << 16 | ends;
     for (std::uint32_t k = 2; k < n; ++k)
         to[k] = (low + k) << 16 | ends;
-    chunk.edgePoints[i] = static_cast<std::uint32_t>(chunk.vertexCount + chunk.pointCount) - low;
-    chunk.pointCount += n;
+    work.edgePoints[i] = static_cast<std::uint32_t>(work.vertexCount + work.pointCount) - low;
+    work.pointCount += n;
 }
 
 void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t first, std::uint32_t count,
-               const int* passed, Slicer::Chunk& chunk)
+               const int* passed, Slicer::Work& work)
 {
 #if defined(OSGVOLUMIZER_DISPATCH_AVX2)
     const std::uint32_t end = first + count;
-    if (chunk.hasPassedBytes) first = avx512::listFaces(tetrahedra, first, end, passed, chunk);
+    if (work.hasPassedBytes) first = avx512::listFaces(tetrahedra, first, end, passed, work);
     if (avx2::available()) {
-        avx2::listFaces(tetrahedra, first, end, passed, chunk);
+        avx2::listFaces(tetrahedra, first, end, passed, work);
         return;
     }
 #endif
     for (std::uint32_t t = first; t < first + count; ++t)
-        listFace(tetrahedra[t], t, passed, chunk);
-}
-
-std::size_t countPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed)
-{
-#if defined(OSGVOLUMIZER_DISPATCH_AVX2)
-    if (avx2::available()) return avx2::countPoints(edges, count, passed);
-#endif
-    std::size_t r = 0;
-    for (std::uint32_t i = 0; i < count; ++i)
-        r += static_cast<std::size_t>(std::abs(passed[edges[i].a] - passed[edges[i].b]));
-    return r;
+        listFace(tetrahedra[t], t, passed, work);
 }
 
 void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed,
-                Slicer::Chunk& chunk)
+                Slicer::Work& work)
 {
-    growLarge(chunk.edgePoints, count);
-    chunk.pointCount = 0;
+    growLarge(work.edgePoints, count);
+    work.pointCount = 0;
 #if defined(OSGVOLUMIZER_DISPATCH_AVX2)
-    if (chunk.hasPassedBytes) {
-        std::uint32_t i = avx512::listPoints(edges, count, passed, chunk);
+    if (work.hasPassedBytes) {
+        std::uint32_t i = avx512::listPoints(edges, count, passed, work);
         for (; i < count; ++i)
-            listEdge(edges[i], i, passed, chunk);
+            listEdge(edges[i], i, passed, work);
         return;
     }
     if (avx2::available()) {
-        avx2::listPoints(edges, count, passed, chunk);
+        avx2::listPoints(edges, count, passed, work);
         return;
     }
 #endif
     for (std::uint32_t i = 0; i < count; ++i)
-        listEdge(edges[i], i, passed, chunk);
+        listEdge(edges[i], i, passed, work);
 }
 
 void emitFaces(const Emission& in)

@@ -48,23 +48,20 @@ PassedRange listLayers(const SlicePlan& plan, const TetraBlocks::Block& block, i
 
 /// To be called before listFaces() and listPoints() of a block.
 /// \param highest the largest of the numbers that count
-void packPassed(const int* passed, int highest, Slicer::Chunk& chunk);
+void packPassed(const int* passed, int highest, Slicer::Work& work);
 
-/// Appends an entry to the chunk for every surface that meets one of `count` tetrahedra of a block,
+/// Adds an entry to `work` for every surface that meets one of `count` tetrahedra of a block,
 /// beginning with number `first`. `passed` belongs to the block's vertices.
 void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t first, std::uint32_t count,
-               const int* passed, Slicer::Chunk& chunk);
+               const int* passed, Slicer::Work& work);
 
-/// How many points the edges of a block get.
-std::size_t countPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed);
-
-/// Fills chunk.points and chunk.edgePoints for the edges of a block.
+/// Fills work.points and work.edgePoints for the edges of a block.
 void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed,
-                Slicer::Chunk& chunk);
+                Slicer::Work& work);
 
-/// Makes chunk.points, and uses them up. Writes nothing beyond the last.
+/// Makes work.points, and uses them up. Writes nothing beyond the last.
 void writePoints(const TetraBlocks& blocks, const TetraBlocks::Block& block, const double* layers,
-                 int base, Slicer::Chunk& chunk, float* to);
+                 int base, Slicer::Work& work, float* to);
 
 /// Where the faces of one block come from and go to.
 struct Emission
@@ -87,10 +84,9 @@ bool available();
 PassedRange listLayers(const SlicePlan& plan, const double* record, std::size_t stride,
                        std::uint32_t count, int base, int end, double* layers, int* passed);
 void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t first, std::uint32_t end,
-               const int* passed, Slicer::Chunk& chunk);
-std::size_t countPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed);
+               const int* passed, Slicer::Work& work);
 void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed,
-                Slicer::Chunk& chunk);
+                Slicer::Work& work);
 void weighPoints(const double* layers, int base, std::size_t count, std::uint32_t* points,
                  double* weights);
 void emitFaces(const Emission& emission);
@@ -101,11 +97,11 @@ namespace avx512 {
 
 /// VBMI, which looks up bytes, and what comes with it: Ice Lake, Zen 4 and later.
 bool available();
-void packPassed(const int* passed, Slicer::Chunk& chunk);
+void packPassed(const int* passed, Slicer::Work& work);
 std::uint32_t listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t first,
-                        std::uint32_t end, const int* passed, Slicer::Chunk& chunk);
+                        std::uint32_t end, const int* passed, Slicer::Work& work);
 std::uint32_t listPoints(const TetraBlocks::Edge* edges, std::uint32_t count, const int* passed,
-                         Slicer::Chunk& chunk);
+                         Slicer::Work& work);
 std::size_t weighPoints(const double* layers, int base, std::size_t count, std::uint32_t* points,
                         double* weights);
 
@@ -124,12 +120,12 @@ inline void listLayer(const SlicePlan& plan, double depth, int base, int end, do
 }
 
 void listFace(const TetraBlocks::Tetra& tetra, std::uint32_t t, const int* passed,
-              Slicer::Chunk& chunk);
+              Slicer::Work& work);
 void listEdge(const TetraBlocks::Edge& edge, std::uint32_t i, const int* passed,
-              Slicer::Chunk& chunk);
+              Slicer::Work& work);
 
-/// Turns a point of a chunk into its far, near and nearer vertex (8 bits each, the latter 16 up),
-/// and sets the weight; see Between.
+/// Turns a point of Work::points into its far, near and nearer vertex (8 bits each, the latter 16
+/// up), and sets the weight; see Between.
 inline void weighPoint(const double* layers, int base, std::uint32_t& point, double& weight)
 {
     const std::uint32_t a = point & 0xffu, b = point >> 8 & 0xffu;

@@ -193,7 +193,7 @@ OSGVOLUMIZER_AVX2 PassedRange listLayers(const SlicePlan& plan, const double* re
 }
 
 OSGVOLUMIZER_AVX2 void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t t,
-                                 std::uint32_t end, const int* passed, Slicer::Chunk& chunk)
+                                 std::uint32_t end, const int* passed, Slicer::Work& work)
 {
     const __m256i byte = _mm256_set1_epi32(0xff);
     for (; t + 8 <= end; t += 8) {
@@ -210,7 +210,7 @@ OSGVOLUMIZER_AVX2 void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint
         const __m256i n = _mm256_sub_epi32(high, low);
         if (_mm256_movemask_epi8(_mm256_cmpgt_epi32(n, _mm256_set1_epi32(2)))) {
             for (std::uint32_t i = t; i < t + 8; ++i)
-                listFace(tetrahedra[i], i, passed, chunk);
+                listFace(tetrahedra[i], i, passed, work);
             continue;
         }
         const __m256i number =
@@ -222,38 +222,17 @@ OSGVOLUMIZER_AVX2 void listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint
                                               beyond(a, b, c, d, low));
         const __m256i second = _mm256_or_si256(_mm256_or_si256(number, _mm256_slli_epi32(next, 14)),
                                                beyond(a, b, c, d, next));
-        growLarge(chunk.entries, chunk.entryCount + 24, chunk.entryCount);
+        growLarge(work.entries, work.entryCount + 24, work.entryCount);
         const __m256i sum = runningSum(n);
-        writePairs(first, second, _mm256_sub_epi32(sum, n),
-                   chunk.entries.data() + chunk.entryCount);
-        chunk.entryCount += static_cast<std::uint32_t>(_mm256_extract_epi32(sum, 7));
+        writePairs(first, second, _mm256_sub_epi32(sum, n), work.entries.data() + work.entryCount);
+        work.entryCount += static_cast<std::uint32_t>(_mm256_extract_epi32(sum, 7));
     }
     for (; t < end; ++t)
-        listFace(tetrahedra[t], t, passed, chunk);
-}
-
-OSGVOLUMIZER_AVX2 std::size_t countPoints(const TetraBlocks::Edge* edges, std::uint32_t count,
-                                          const int* passed)
-{
-    // Eight sums of 32 bits: a block has few thousand edges, of at most 2^16 surfaces each.
-    __m256i sum = _mm256_setzero_si256();
-    std::size_t r = 0;
-    std::uint32_t i = 0;
-    for (; i + 8 <= count; i += 8) {
-        const EightEdges e(edges + i, passed);
-        sum = _mm256_add_epi32(sum, _mm256_abs_epi32(_mm256_sub_epi32(e.passedA, e.passedB)));
-    }
-    alignas(32) std::uint32_t parts[8];
-    _mm256_store_si256(reinterpret_cast<__m256i*>(parts), sum);
-    for (const std::uint32_t part : parts)
-        r += part;
-    for (; i < count; ++i)
-        r += static_cast<std::size_t>(std::abs(passed[edges[i].a] - passed[edges[i].b]));
-    return r;
+        listFace(tetrahedra[t], t, passed, work);
 }
 
 OSGVOLUMIZER_AVX2 void listPoints(const TetraBlocks::Edge* edges, std::uint32_t count,
-                                  const int* passed, Slicer::Chunk& chunk)
+                                  const int* passed, Slicer::Work& work)
 {
     std::uint32_t i = 0;
     for (; i + 8 <= count; i += 8) {
@@ -263,7 +242,7 @@ OSGVOLUMIZER_AVX2 void listPoints(const TetraBlocks::Edge* edges, std::uint32_t 
         const __m256i n = _mm256_sub_epi32(_mm256_max_epi32(e.passedA, e.passedB), low);
         if (_mm256_movemask_epi8(_mm256_cmpgt_epi32(n, _mm256_set1_epi32(2)))) {
             for (std::uint32_t k = i; k < i + 8; ++k)
-                listEdge(edges[k], k, passed, chunk);
+                listEdge(edges[k], k, passed, work);
             continue;
         }
         const __m256i up = _mm256_cmpgt_epi32(e.passedB, e.passedA);
@@ -273,17 +252,17 @@ OSGVOLUMIZER_AVX2 void listPoints(const TetraBlocks::Edge* edges, std::uint32_t 
             _mm256_or_si256(farEnd, _mm256_slli_epi32(nearEnd, 8)), _mm256_slli_epi32(low, 16));
         const __m256i sum = runningSum(n);
         const __m256i before = _mm256_sub_epi32(sum, n);
-        const auto first = static_cast<int>(chunk.vertexCount + chunk.pointCount);
+        const auto first = static_cast<int>(work.vertexCount + work.pointCount);
         _mm256_storeu_si256(
-            reinterpret_cast<__m256i*>(chunk.edgePoints.data() + i),
+            reinterpret_cast<__m256i*>(work.edgePoints.data() + i),
             _mm256_sub_epi32(_mm256_add_epi32(before, _mm256_set1_epi32(first)), low));
-        growLarge(chunk.points, chunk.pointCount + 24, chunk.pointCount);
+        growLarge(work.points, work.pointCount + 24, work.pointCount);
         writePairs(point, _mm256_add_epi32(point, _mm256_set1_epi32(0x10000)), before,
-                   chunk.points.data() + chunk.pointCount);
-        chunk.pointCount += static_cast<std::uint32_t>(_mm256_extract_epi32(sum, 7));
+                   work.points.data() + work.pointCount);
+        work.pointCount += static_cast<std::uint32_t>(_mm256_extract_epi32(sum, 7));
     }
     for (; i < count; ++i)
-        listEdge(edges[i], i, passed, chunk);
+        listEdge(edges[i], i, passed, work);
 }
 
 OSGVOLUMIZER_AVX2 void weighPoints(const double* layers, int base, std::size_t count,

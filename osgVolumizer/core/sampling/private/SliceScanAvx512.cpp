@@ -72,18 +72,18 @@ bool available()
     return has && instructionLimit() >= Instructions::AVX512;
 }
 
-OSGVOLUMIZER_AVX512 void packPassed(const int* passed, Slicer::Chunk& chunk)
+OSGVOLUMIZER_AVX512 void packPassed(const int* passed, Slicer::Work& work)
 {
     for (std::size_t i = 0; i < TetraBlocks::MAX_VERTICES; i += 16)
-        _mm_store_si128(reinterpret_cast<__m128i*>(chunk.passedBytes.data() + i),
+        _mm_store_si128(reinterpret_cast<__m128i*>(work.passedBytes.data() + i),
                         _mm512_cvtepi32_epi8(_mm512_loadu_si512(passed + i)));
 }
 
 OSGVOLUMIZER_AVX512 std::uint32_t listFaces(const TetraBlocks::Tetra* tetrahedra, std::uint32_t t,
                                             std::uint32_t end, const int* passed,
-                                            Slicer::Chunk& chunk)
+                                            Slicer::Work& work)
 {
-    const Table table(chunk.passedBytes.data());
+    const Table table(work.passedBytes.data());
     const __m512i bits = _mm512_set1_epi32(0x08040201), oneByte = _mm512_set1_epi8(1),
                   nextSurface = _mm512_set1_epi32(1 << 14), lowByte = _mm512_set1_epi32(0xff),
                   steps = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
@@ -98,7 +98,7 @@ OSGVOLUMIZER_AVX512 std::uint32_t listFaces(const TetraBlocks::Tetra* tetrahedra
         const __m512i n = _mm512_and_si512(_mm512_sub_epi8(high, low), lowByte);
         if (_mm512_cmpgt_epu32_mask(n, _mm512_set1_epi32(2))) {
             for (std::uint32_t i = t; i < t + 16; ++i)
-                listFace(tetrahedra[i], i, passed, chunk);
+                listFace(tetrahedra[i], i, passed, work);
             continue;
         }
         const __mmask16 one = _mm512_test_epi32_mask(n, n);
@@ -111,21 +111,21 @@ OSGVOLUMIZER_AVX512 std::uint32_t listFaces(const TetraBlocks::Tetra* tetrahedra
         const __m512i second =
             addBits(_mm512_add_epi32(base, nextSurface),
                     _mm512_cmpgt_epu8_mask(v, _mm512_add_epi8(low, oneByte)), bits);
-        growLarge(chunk.entries, chunk.entryCount + 48, chunk.entryCount);
-        std::uint32_t* to = chunk.entries.data() + chunk.entryCount;
+        growLarge(work.entries, work.entryCount + 48, work.entryCount);
+        std::uint32_t* to = work.entries.data() + work.entryCount;
         _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(one, first));
         to += _mm_popcnt_u32(one);
         _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(two, second));
         to += _mm_popcnt_u32(two);
-        chunk.entryCount = static_cast<std::size_t>(to - chunk.entries.data());
+        work.entryCount = static_cast<std::size_t>(to - work.entries.data());
     }
     return t;
 }
 
 OSGVOLUMIZER_AVX512 std::uint32_t listPoints(const TetraBlocks::Edge* edges, std::uint32_t count,
-                                             const int* passed, Slicer::Chunk& chunk)
+                                             const int* passed, Slicer::Work& work)
 {
-    const Table table(chunk.passedBytes.data());
+    const Table table(work.passedBytes.data());
     const __m512i lowByte = _mm512_set1_epi16(0xff);
     const __m512i oneSurface = _mm512_set1_epi32(0x10000);
     // The first eight of two registers in turn, and the last eight.
@@ -141,23 +141,23 @@ OSGVOLUMIZER_AVX512 std::uint32_t listPoints(const TetraBlocks::Edge* edges, std
         const __m512i n16 = _mm512_sub_epi16(_mm512_max_epu16(passedA, passedB), low16);
         if (_mm512_cmpgt_epu16_mask(n16, _mm512_set1_epi16(2))) {
             for (std::uint32_t k = i; k < i + 32; ++k)
-                listEdge(edges[k], k, passed, chunk);
+                listEdge(edges[k], k, passed, work);
             continue;
         }
         const __m512i swapped = _mm512_or_si512(_mm512_slli_epi16(e, 8), _mm512_srli_epi16(e, 8));
         const __m512i ends16 =
             _mm512_mask_blend_epi16(_mm512_cmpgt_epu16_mask(passedB, passedA), swapped, e);
-        growLarge(chunk.points, chunk.pointCount + 96, chunk.pointCount);
-        std::uint32_t* to = chunk.points.data() + chunk.pointCount;
+        growLarge(work.points, work.pointCount + 96, work.pointCount);
+        std::uint32_t* to = work.points.data() + work.pointCount;
         for (int half = 0; half < 2; ++half) {
             const __m512i n = widen(n16, half), low = widen(low16, half);
             const __m512i first = _mm512_or_si512(widen(ends16, half), _mm512_slli_epi32(low, 16));
             const __m512i second = _mm512_add_epi32(first, oneSurface);
             const __m512i before = _mm512_sub_epi32(runningSum(n), n);
-            const auto number = static_cast<int>(
-                chunk.vertexCount + static_cast<std::size_t>(to - chunk.points.data()));
+            const auto number = static_cast<int>(work.vertexCount +
+                                                 static_cast<std::size_t>(to - work.points.data()));
             _mm512_storeu_si512(
-                chunk.edgePoints.data() + i + 16 * half,
+                work.edgePoints.data() + i + 16 * half,
                 _mm512_sub_epi32(_mm512_add_epi32(before, _mm512_set1_epi32(number)), low));
             // Both points of each edge one after the other, those that there are moved together.
             const std::uint32_t has =
@@ -172,7 +172,7 @@ OSGVOLUMIZER_AVX512 std::uint32_t listPoints(const TetraBlocks::Edge* edges, std
                                                 _mm512_permutex2var_epi32(first, upper, second)));
             to += _mm_popcnt_u32(has >> 16);
         }
-        chunk.pointCount = static_cast<std::size_t>(to - chunk.points.data());
+        work.pointCount = static_cast<std::size_t>(to - work.points.data());
     }
     return i;
 }

@@ -14,7 +14,6 @@ namespace core {
 namespace {
 
 constexpr std::size_t MAX_BINS = std::size_t(1) << 24;
-constexpr std::size_t BLOCKS_PER_CHUNK = 8; ///< fewer are not worth a task
 
 bool outside(const Box3d& box, const std::vector<Plane>& visible)
 {
@@ -86,14 +85,14 @@ void Slicer::depthRange(const SlicePlan& plan, const TetraBlocks::Block& block, 
     farthest = middle + half;
 }
 
-Slicer::BlockFaces Slicer::countBlock(const SlicePlan& plan, Chunk& chunk,
-                                      const TetraBlocks::Block& block)
+Slicer::BlockFaces Slicer::countBlock(const SlicePlan& plan, const TetraBlocks::Block& block)
 {
+    Work& work = _work;
     const TetraBlocks& blocks = *plan.blocks;
     int base = plan.firstSurface, end = base + plan.surfaceCount;
-    if (block.place == TetraBlocks::OUTSIDE) return {chunk.entryCount, base, 0};
+    if (block.place == TetraBlocks::OUTSIDE) return {work.entryCount, base, 0};
     if (!plan.visible.empty() && outside(block.bounds, plan.visible))
-        return {chunk.entryCount, base, 0};
+        return {work.entryCount, base, 0};
     double nearest, farthest;
     depthRange(plan, block, nearest, farthest);
     const double layerMargin = 1e-9; // of a layer, for the rounding of what follows
@@ -103,19 +102,18 @@ Slicer::BlockFaces Slicer::countBlock(const SlicePlan& plan, Chunk& chunk,
         base =
             surfacesPassed((plan.lattice.farDepth - farthest) * scale - layerMargin, first, last);
         end = surfacesPassed((plan.lattice.farDepth - nearest) * scale + layerMargin, first, last);
-        if (base == end) return {chunk.entryCount, base, 0};
+        if (base == end) return {work.entryCount, base, 0};
     }
     double* layers = _layers.data() + block.firstVertex;
     int* passed = _passed.data() + block.firstVertex;
     const PassedRange range = listLayers(plan, block, base, end, layers, passed);
-    if (range.lowest >= range.highest && !plan.primitive) return {chunk.entryCount, base, 0};
+    if (range.lowest >= range.highest && !plan.primitive) return {work.entryCount, base, 0};
 
-    packPassed(passed, range.highest, chunk);
-    const std::size_t start = chunk.entryCount;
+    packPassed(passed, range.highest, work);
     const bool general = plan.general() || range.highest > MAX_BLOCK_SURFACES;
     const TetraBlocks::Tetra* tetra = blocks.tetrahedra.data() + block.firstTetra;
     if (block.place != TetraBlocks::CLIP && !general) {
-        listFaces(tetra, 0, block.tetraCount, passed, chunk);
+        listFaces(tetra, 0, block.tetraCount, passed, work);
     } else {
         // Runs of tetrahedra that are whole in their boxes go the fast way.
         std::uint32_t runStart = 0;
@@ -126,43 +124,39 @@ Slicer::BlockFaces Slicer::countBlock(const SlicePlan& plan, Chunk& chunk,
             const bool flush = p < TetraBlocks::OUTSIDE && p > TetraBlocks::BOX_MASK &&
                                flushFace(layers, tetra[t], p >> TetraBlocks::FACE_SHIFT);
             if (p < TetraBlocks::OUTSIDE && !flush && !general) continue;
-            listFaces(tetra, runStart, t - runStart, passed, chunk);
+            listFaces(tetra, runStart, t - runStart, passed, work);
             runStart = t + 1;
-            if (p != TetraBlocks::OUTSIDE) clipTetra(plan, block, t, layers, chunk);
+            if (p != TetraBlocks::OUTSIDE) clipTetra(plan, block, t, layers, work);
         }
-        listFaces(tetra, runStart, block.tetraCount - runStart, passed, chunk);
+        listFaces(tetra, runStart, block.tetraCount - runStart, passed, work);
     }
-    if (_countPoints && chunk.entryCount > start)
-        chunk.vertexCount +=
-            countPoints(blocks.edges.data() + block.firstEdge, block.edgeCount, passed);
-    return {chunk.entryCount, base, range.highest};
+    return {work.entryCount, base, range.highest};
 }
 
-void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
+void Slicer::countBlocks(const SlicePlan& plan)
 {
+    Work& work = _work;
     const std::size_t bins =
         static_cast<std::size_t>(plan.surfaceCount) * static_cast<std::size_t>(plan.brickCount);
-    chunk.fast.assign(bins, 0);
-    chunk.clipped.assign(bins, 0);
-    chunk.entryCount = 0;
-    chunk.vertexCount = 0;
-    chunk.blockFaces.clear();
-    chunk.bins.clear();
-    chunk.sizes.clear();
-    chunk.valueCount = 0;
-    chunk.spacings.clear();
+    work.fast.assign(bins, 0);
+    work.clipped.assign(bins, 0);
+    work.entryCount = 0;
+    work.blockFaces.clear();
+    work.bins.clear();
+    work.sizes.clear();
+    work.valueCount = 0;
+    work.spacings.clear();
     const TetraBlocks& blocks = *plan.blocks;
     const auto brickCount = static_cast<std::size_t>(plan.brickCount);
-    for (std::uint32_t b = chunk.firstBlock; b < chunk.endBlock; ++b) {
-        const TetraBlocks::Block& block = blocks.blocks[b];
-        const std::size_t start = chunk.entryCount;
-        const BlockFaces faces = countBlock(plan, chunk, block);
-        chunk.blockFaces.push_back(faces);
+    for (const TetraBlocks::Block& block : blocks.blocks) {
+        const std::size_t start = work.entryCount;
+        const BlockFaces faces = countBlock(plan, block);
+        work.blockFaces.push_back(faces);
         if (faces.endEntry == start) continue;
-        Count* counts = chunk.fast.data() +
+        Count* counts = work.fast.data() +
                         static_cast<std::size_t>(faces.base - plan.firstSurface) * brickCount;
-        const std::uint32_t* entry = chunk.entries.data() + start;
-        const std::uint32_t* const end = chunk.entries.data() + chunk.entryCount;
+        const std::uint32_t* entry = work.entries.data() + start;
+        const std::uint32_t* const end = work.entries.data() + work.entryCount;
         if (block.place != TetraBlocks::CLIP) {
             countFaces(entry, end, faces.highest, brickCount, counts + block.place);
             continue;
@@ -173,30 +167,19 @@ void Slicer::countChunk(const SlicePlan& plan, Chunk& chunk)
                    (places[*entry >> 4 & 0x3ffu] & TetraBlocks::BOX_MASK)] +=
                 FACE_COUNTS[*entry & 15u];
     }
-    for (std::size_t f = 0; f < chunk.bins.size(); ++f)
-        chunk.clipped[chunk.bins[f]] += count(1, chunk.sizes[f]);
+    for (std::size_t f = 0; f < work.bins.size(); ++f)
+        work.clipped[work.bins[f]] += count(1, work.sizes[f]);
 }
 
-bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, PolygonizedFaces& out)
+bool Slicer::placeBins(const SlicePlan& plan, PolygonizedFaces& out)
 {
-    std::uint64_t indices = 0, faces = 0, vertices = 0;
-    const auto stride = static_cast<std::size_t>(plan.blocks->format().stride());
-    for (std::size_t c = 0; c < chunkCount; ++c) {
-        for (const Count n : _chunks[c].fast)
+    std::uint64_t indices = 0, faces = 0;
+    for (const std::vector<Count>* counts : {&_work.fast, &_work.clipped})
+        for (const Count n : *counts)
             indices += indexCount(n), faces += faceCount(n);
-        for (const Count n : _chunks[c].clipped)
-            indices += indexCount(n), faces += faceCount(n);
-        _chunks[c].clippedVertex = vertices;
-        vertices += _chunks[c].valueCount / stride;
-    }
-    for (std::size_t c = 0; c < chunkCount; ++c) {
-        const std::size_t own = _chunks[c].vertexCount;
-        _chunks[c].vertexCount = vertices;
-        vertices += own;
-    }
-    if (indices > 0xffffffffu || vertices > 0xffffffffu) return false;
+    _work.vertexCount = _work.valueCount / plan.blocks->recordSize();
+    if (indices > 0xffffffffu || _work.vertexCount > 0xffffffffu) return false;
     out.faces.format = plan.blocks->format();
-    if (_countPoints) resizeLarge(out.faces.vertices, vertices * stride);
     resizeLarge(out.faces.indices, indices);
     resizeLarge(out.faces.faceOffsets, faces + 1);
     out.faceSpacings.resize(plan.primitive ? faces : 0);
@@ -209,14 +192,9 @@ bool Slicer::placeBins(const SlicePlan& plan, std::size_t chunkCount, Polygonize
             static_cast<std::size_t>(plan.order[place / brickCount]) * brickCount +
             place % brickCount;
         const Count start = at;
-        for (std::size_t c = 0; c < chunkCount; ++c) {
-            const Count n = _chunks[c].fast[bin];
-            _chunks[c].fast[bin] = at;
-            at += n;
-        }
-        for (std::size_t c = 0; c < chunkCount; ++c) {
-            const Count n = _chunks[c].clipped[bin];
-            _chunks[c].clipped[bin] = at;
+        for (std::vector<Count>* counts : {&_work.fast, &_work.clipped}) {
+            const Count n = (*counts)[bin];
+            (*counts)[bin] = at;
             at += n;
         }
         out.ranges[place] = {faceCount(start), faceCount(at) - faceCount(start), indexCount(start),
@@ -236,41 +214,16 @@ Status Slicer::checkSize(const SlicePlan& plan)
                                       " bricks are more than 2^24."};
 }
 
-Status Slicer::run(const SlicePlan& plan, Executor* executor, PolygonizedFaces& out)
+Status Slicer::run(const SlicePlan& plan, PolygonizedFaces& out)
 try {
-    const std::size_t bins =
-        static_cast<std::size_t>(plan.surfaceCount) * static_cast<std::size_t>(plan.brickCount);
-    // Each chunk counts for itself; with many bins that alone would cost more than it gains.
-    const std::size_t blockCount = plan.blocks->blocks.size();
-    std::size_t chunkCount = executor ? static_cast<std::size_t>(executor->concurrency()) : 1;
-    chunkCount = std::min(chunkCount, blockCount / BLOCKS_PER_CHUNK);
-    chunkCount =
-        std::max<std::size_t>(1, std::min(chunkCount, MAX_BINS / std::max<std::size_t>(1, bins)));
-    if (_chunks.size() < chunkCount) _chunks.resize(chunkCount);
-    for (std::size_t c = 0; c < chunkCount; ++c) {
-        _chunks[c].firstBlock = static_cast<std::uint32_t>(blockCount * c / chunkCount);
-        _chunks[c].endBlock = static_cast<std::uint32_t>(blockCount * (c + 1) / chunkCount);
-    }
-    const auto forAll = [&](const auto& task) {
-        if (chunkCount == 1)
-            task(0);
-        else
-            executor->run(static_cast<int>(chunkCount), std::cref(task));
-    };
     // Some more, so that the last block's may be read in groups as well.
     resizeLarge(_passed, plan.blocks->sourceVertices.size() + TetraBlocks::MAX_VERTICES);
     resizeLarge(_layers, plan.blocks->sourceVertices.size());
-    // One chunk puts its points into their place as it goes; several have to know where each
-    // begins. Those of clipped faces come first.
-    _countPoints = chunkCount > 1;
-    if (!_countPoints) _chunks[0].vertices.swap(out.faces.vertices);
-    forAll([&](int c) { countChunk(plan, _chunks[static_cast<std::size_t>(c)]); });
-    if (!_countPoints) _chunks[0].vertices.swap(out.faces.vertices);
-    bool fits = placeBins(plan, chunkCount, out);
-    if (fits && chunkCount == 1)
-        fits = emitChunk(plan, _chunks[0], out);
-    else if (fits)
-        forAll([&](int c) { emitChunk(plan, _chunks[static_cast<std::size_t>(c)], out); });
+    // Points of clipped faces are put into their place as they are made.
+    _work.vertices.swap(out.faces.vertices);
+    countBlocks(plan);
+    _work.vertices.swap(out.faces.vertices);
+    const bool fits = placeBins(plan, out) && emitBlocks(plan, out);
     if (fits) return {};
     out = PolygonizedFaces();
     return {ErrorCode::TOO_LARGE, "polygonize: the faces have more than 2^32 corners."};

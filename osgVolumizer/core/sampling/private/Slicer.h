@@ -1,6 +1,5 @@
 #pragma once
 
-#include "../../Parallel.h"
 #include "../../geometry/BoxIndex.h"
 #include "../../geometry/TetraBlocks.h"
 #include "../Polygonize.h"
@@ -77,7 +76,7 @@ public:
     static Status checkSize(const SlicePlan& plan);
     /// Expects checkSize(). Fills faces, ranges and faceSpacings of `out`. TOO_LARGE where they
     /// have too many corners or do not fit in memory; `out` is empty then.
-    Status run(const SlicePlan& plan, Executor* executor, PolygonizedFaces& out);
+    Status run(const SlicePlan& plan, PolygonizedFaces& out);
 
     /// Depth of a vertex, from its record.
     static double depthOf(const SlicePlan& plan, const double* record, std::uint32_t source)
@@ -106,30 +105,28 @@ public:
     /// What the first pass leaves to the second about a block.
     struct BlockFaces
     {
-        std::size_t endEntry = 0; ///< in Chunk::entries
+        std::size_t endEntry = 0; ///< in Work::entries
         int base = 0;             ///< the surface that entries and points count from
         int highest = 0;          ///< the most that a vertex has passed, from there on
     };
     /// A block that spans more surfaces takes the general way, so that 16 bits hold the number.
     static constexpr int MAX_BLOCK_SURFACES = 0xffff;
 
-    /// The share of one thread: neighbouring blocks.
-    struct Chunk
+    /// What is under way between the passes.
+    struct Work
     {
-        std::uint32_t firstBlock = 0, endBlock = 0;
         /// Faces to make, block after block: surface << 14 | tetrahedron of the block << 4 | case.
         std::vector<std::uint32_t> entries;
         std::size_t entryCount = 0;
         std::vector<BlockFaces> blockFaces; ///< points are made only where there are any
         std::vector<Count> fast, clipped;   ///< per bin: first counts, then cursors
-        std::size_t vertexCount = 0;        ///< shared points, first their number, then the next
-        std::size_t clippedVertex = 0;      ///< where the points of clipped faces begin
-        // Faces that were clipped, in the order of making. The vertices of a chunk that is alone
-        // are in their place already.
+        std::size_t vertexCount = 0;        ///< made so far
+        // Faces that were clipped, in the order of making. Their points come before the shared
+        // ones.
         std::vector<std::uint32_t> bins;
         std::vector<std::uint16_t> sizes;
-        std::vector<float> vertices;
-        std::size_t valueCount = 0; ///< in `vertices`
+        std::vector<float> vertices; ///< those of the faces to be, while blocks are counted
+        std::size_t valueCount = 0;  ///< in `vertices`
         std::vector<float> spacings;
         RecordPolygon polygon;
         RecordPolygon::Shape whole, uncut; ///< before it is cut to a box, and to a piece
@@ -146,14 +143,13 @@ public:
     };
 
 private:
-    void countChunk(const SlicePlan& plan, Chunk& chunk);
-    BlockFaces countBlock(const SlicePlan& plan, Chunk& chunk, const TetraBlocks::Block& block);
-    bool placeBins(const SlicePlan& plan, std::size_t chunkCount, PolygonizedFaces& out);
-    bool emitChunk(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
-    void emitClipped(const SlicePlan& plan, Chunk& chunk, PolygonizedFaces& out) const;
+    void countBlocks(const SlicePlan& plan);
+    BlockFaces countBlock(const SlicePlan& plan, const TetraBlocks::Block& block);
+    bool placeBins(const SlicePlan& plan, PolygonizedFaces& out);
+    bool emitBlocks(const SlicePlan& plan, PolygonizedFaces& out);
+    void emitClipped(const SlicePlan& plan, PolygonizedFaces& out);
 
-    std::vector<Chunk> _chunks;
-    bool _countPoints = false; ///< first pass: whether it has to, since chunks share the vertices
+    Work _work;
     // Per vertex of the blocks:
     std::vector<double> _layers; ///< layer coordinate: surface k is at k + 1/2
     std::vector<int>
@@ -174,10 +170,10 @@ inline int surfacesPassed(double f, int first, int last)
 }
 
 /// Cuts one tetrahedron the general way, clips the faces to the boxes and appends them to the
-/// chunk.
+/// work.
 /// \param layers layer coordinates of the block's vertices
 void clipTetra(const SlicePlan& plan, const TetraBlocks::Block& block, std::uint32_t tetrahedron,
-               const double* layers, Slicer::Chunk& chunk);
+               const double* layers, Slicer::Work& work);
 
 } // namespace core
 } // namespace osgVolumizer
