@@ -1,10 +1,12 @@
-// Unstructured grids: scalars of vertices and of tetrahedra against the light of each cell in double precision, whatever
-// the mesh looks like.
+// Unstructured grids: scalars of vertices and of tetrahedra against the light of each cell in
+// double precision, whatever the mesh looks like.
 #include "Volumes.h"
 
 #include <oracles/MeshOracle.h>
+#include <oracles/Ray.h>
 #include <oracles/TestMeshes.h>
 #include <support/GLTest.h>
+#include <support/Reports.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -22,7 +24,8 @@ public:
     double value(const glm::dvec3& p) const override
     {
         const glm::dvec3 d = p - glm::dvec3(0.45, 0.55, 0.5);
-        return 0.8 * std::exp(-6.0 * glm::dot(d, d)) + 0.1 * std::sin(5.0 * p.x) * std::cos(4.0 * p.z);
+        return 0.8 * std::exp(-6.0 * glm::dot(d, d)) +
+               0.1 * std::sin(5.0 * p.x) * std::cos(4.0 * p.z);
     }
     glm::dvec3 gradient(const glm::dvec3&) const override { return glm::dvec3(0.0); }
 };
@@ -36,6 +39,7 @@ Points colorfulPoints()
             {1.0, {1.0, 0.5, 0.8, 0.7}}};
 }
 
+/// A mesh in OSG and the same one for the oracle.
 struct TwinMesh
 {
     osg::ref_ptr<VolumeAppearance> node;
@@ -43,31 +47,51 @@ struct TwinMesh
     std::shared_ptr<oracle::MeshOracle> oracle;
 };
 
+const glm::dvec2 RANGE(-0.1, 0.9);
+
+osg::ref_ptr<VolumeGeometry> geometryOf(const oracle::TetraMesh& mesh)
+{
+    osg::ref_ptr<VolumeGeometry> geometry = new VolumeGeometry;
+    core::TetraSet set = oracle::tetraSet(mesh);
+    if (!mesh.colors.empty()) {
+        const core::VertexArray places = set.vertices;
+        set.vertices = core::VertexArray(core::VertexLayout::C4F_V3F);
+        set.vertices.resize(mesh.points.size());
+        for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+            set.vertices.setPosition(i, places.position(i));
+            for (int k = 0; k < 4; ++k)
+                set.vertices.record(i)[k] = mesh.colors[i][k];
+        }
+    }
+    EXPECT_TRUE(geometry->setTetraSet(std::move(set)).ok());
+    if (!mesh.colors.empty()) return geometry;
+    EXPECT_TRUE(geometry->setScalarRange(osg::Vec2d(RANGE.x, RANGE.y)).ok());
+    EXPECT_TRUE(geometry
+                    ->setScalars({mesh.scalars.begin(), mesh.scalars.end()},
+                                 mesh.scalarsPerCell ? VolumeGeometry::PER_TETRAHEDRON
+                                                     : VolumeGeometry::PER_VERTEX)
+                    .ok());
+    return geometry;
+}
+
 TwinMesh makeTwin(const oracle::TetraMesh& mesh, const Points& points, double unit)
 {
     TwinMesh twin;
-    twin.geometry = new VolumeGeometry;
-    EXPECT_TRUE(twin.geometry->setTetraSet(oracle::tetraSet(mesh)).ok());
-    std::vector<float> scalars(mesh.scalars.begin(), mesh.scalars.end());
-    EXPECT_TRUE(twin.geometry
-                    ->setScalars(scalars, mesh.scalarsPerCell ? VolumeGeometry::PER_TETRAHEDRON
-                                                              : VolumeGeometry::PER_VERTEX)
-                    .ok());
-    EXPECT_TRUE(twin.geometry->setScalarRange(osg::Vec2d(-0.1, 0.9)).ok());
+    twin.geometry = geometryOf(mesh);
     twin.node = new VolumeAppearance;
     twin.node->setLookupTable(makeTable(points));
     twin.node->setOpacityUnit(unit);
     twin.node->addChild(twin.geometry);
-    twin.oracle = std::make_shared<oracle::MeshOracle>(
-        mesh, oracle::Table(points, glm::dvec2(-0.1, 0.9)), unit);
+    twin.oracle = std::make_shared<oracle::MeshOracle>(mesh, oracle::Table(points, RANGE), unit);
     return twin;
 }
 
+/// From a direction, in radii from the middle.
 support::RenderOptions viewFrom(const osg::Vec3d& direction, const osg::BoundingSphere& bound,
                                 bool orthographic = false)
 {
     support::RenderOptions options;
-    options.size(128, 128);
+    options.size(96, 96);
     const osg::Vec3d center = bound.center();
     options.lookAt(center + direction * bound.radius(), center, osg::Vec3d(0.1, 0.2, 1.0));
     if (orthographic)
@@ -77,32 +101,240 @@ support::RenderOptions viewFrom(const osg::Vec3d& direction, const osg::Bounding
     return options;
 }
 
-} // namespace
+support::Difference difference(const TwinMesh& twin, const support::RenderOptions& options,
+                               const std::string& name)
+{
+    const support::FloatImage picture = support::renderScene(twin.node, options);
+    const support::FloatImage expected =
+        oracle::render(*twin.oracle, support::oracleCamera(options));
+    support::savePicture(picture, "mesh_" + name);
+    const support::Difference d = support::compare(picture, expected);
+    std::printf("  %-18s rmse %.1e, maximum %.1e at %d %d, bias %.1e, %zu pixels\n", name.c_str(),
+                d.rmse, d.maximum, d.worstX, d.worstY, d.bias, d.pixels);
+    return d;
+}
+
+/// Of a jittered lattice of hexahedra in five tetrahedra each.
+oracle::TetraMesh jittered(int n)
+{
+    oracle::TetraMesh mesh = oracle::latticeMesh(glm::ivec3(n));
+    oracle::jitter(mesh, 0.2 / n, 7);
+    return mesh;
+}
+
+const osg::Vec3d OBLIQUE(3.1, 2.2, 1.3);
 
 class MeshTest : public support::GLTest
 {
+protected:
+    void expectExact(oracle::TetraMesh mesh, const std::string& name, bool perCell = false)
+    {
+        oracle::sampleField(mesh, Bump(), perCell);
+        const TwinMesh twin = makeTwin(mesh, colorfulPoints(), 0.1);
+        const auto bound = twin.node->getBound();
+        EXPECT_LT(difference(twin, viewFrom(OBLIQUE, bound), name).rmse, 1e-5) << name;
+        EXPECT_LT(difference(twin, viewFrom({-2.0, 1.0, -3.0}, bound, true), name + "_ortho").rmse,
+                  1e-5)
+            << name;
+    }
 };
 
-TEST_F(MeshTest, IsAsExactAsFloats)
+} // namespace
+
+TEST_F(MeshTest, IsExactAtAnySize)
 {
-    for (const int n : {3, 12}) {
+    for (const int n : {3, 12, 58}) // 135, 8 640 and 975 560 tetrahedra
+        expectExact(jittered(n), "size" + std::to_string(n));
+}
+
+TEST_F(MeshTest, ErrorFallsWithTheSquareOfTheCellSize)
+{
+    // Of the same field, not interpolated: a fine mesh of the oracle's stands for it.
+    const Points smooth = {{0.0, {0.1, 0.2, 0.9, 0.0}}, {1.0, {1.0, 0.5, 0.8, 0.4}}};
+    oracle::TetraMesh fine = oracle::latticeMesh(glm::ivec3(64));
+    oracle::sampleField(fine, Bump());
+    const auto truth = makeTwin(fine, smooth, 0.1);
+    const auto options = viewFrom(OBLIQUE, truth.node->getBound());
+    const support::FloatImage expected =
+        oracle::render(*truth.oracle, support::oracleCamera(options));
+    std::vector<double> sizes, errors;
+    for (const int n : {4, 8, 16}) {
         oracle::TetraMesh mesh = oracle::latticeMesh(glm::ivec3(n));
-        oracle::jitter(mesh, 0.2 / n, 7);
         oracle::sampleField(mesh, Bump());
-        const TwinMesh twin = makeTwin(mesh, colorfulPoints(), 0.1);
-        for (const bool orthographic : {false, true}) {
-            const auto options = viewFrom({3.1, 2.2, 1.3}, twin.node->getBound(), orthographic);
-            const support::FloatImage picture = support::renderScene(twin.node, options);
-            const support::FloatImage expected =
-                oracle::render(*twin.oracle, support::oracleCamera(options));
-            const support::Difference d = support::compare(picture, expected);
-            support::savePicture(picture, "mesh" + std::to_string(n));
-            support::savePicture(expected, "meshoracle" + std::to_string(n));
-            std::printf("n %d ortho %d rmse %g max %g at %d %d bias %g pixels %zu\n", n, orthographic, d.rmse,
-                        d.maximum, d.worstX, d.worstY, d.bias, d.pixels);
-            EXPECT_LT(d.rmse, 1e-5);
-        }
+        const auto twin = makeTwin(mesh, smooth, 0.1);
+        sizes.push_back(1.0 / n);
+        errors.push_back(support::compare(support::renderScene(twin.node, options), expected).rmse);
     }
+    EXPECT_GT(support::convergenceOrder(sizes, errors), 1.8);
+    EXPECT_LT(errors.back(), 3e-3);
+}
+
+TEST_F(MeshTest, IsExactWhateverItsShape)
+{
+    expectExact(oracle::cornerMesh(8), "corner");
+    expectExact(oracle::holeMesh(9, oracle::HexahedronSplit::SIX), "hole");
+    expectExact(oracle::twoPieceMesh(9), "pieces");
+    expectExact(oracle::cyclicBars(6), "cyclic");
+    oracle::TetraMesh slivers = oracle::latticeMesh(glm::ivec3(14));
+    EXPECT_GT(oracle::flatten(slivers, 0.3, 1e-4, 3), 1000u);
+    expectExact(slivers, "slivers");
+}
+
+TEST_F(MeshTest, ScalarsOfTetrahedraAreConstantInThem)
+{
+    expectExact(jittered(8), "cells", true);
+}
+
+TEST_F(MeshTest, ColoursOfVerticesAreLinear)
+{
+    oracle::TetraMesh mesh = jittered(6);
+    for (const glm::dvec3& p : mesh.points)
+        mesh.colors.emplace_back(glm::vec4(p.x, 1.0 - p.y, p.z, 0.02 + 0.5 * p.x * p.x * p.y));
+    for (const double unit : {1.0, 0.05}) {
+        const TwinMesh twin = makeTwin(mesh, colorfulPoints(), unit);
+        const auto options = viewFrom(OBLIQUE, twin.node->getBound());
+        EXPECT_LT(difference(twin, options, "colours").rmse, 1e-5);
+    }
+}
+
+TEST_F(MeshTest, RaysMayLieInFacesAndEdges)
+{
+    oracle::TetraMesh mesh = oracle::latticeMesh(glm::ivec3(8));
+    oracle::sampleField(mesh, Bump());
+    const TwinMesh twin = makeTwin(mesh, colorfulPoints(), 0.1);
+    // 96 pixels over 12 hexahedra: every eighth ray between pixels, and shifted by half a pixel in
+    // them.
+    for (const double shift : {0.0, 0.5}) {
+        support::RenderOptions options;
+        options.size(96, 96);
+        const double x = 0.5 + shift / 64.0;
+        options.lookAt({x, -3.0, x}, {x, 0.5, x}, {0, 0, 1}).orthographic(0.75);
+        const support::FloatImage expected =
+            oracle::render(*twin.oracle, support::oracleCamera(options));
+        // Rays in the outer faces may be in or out.
+        const support::Mask inside = support::eroded(support::coveredPixels(expected), 1);
+        const support::Difference d =
+            support::compare(support::renderScene(twin.node, options), expected, inside);
+        EXPECT_GT(d.pixels, 3800u);
+        EXPECT_LT(d.rmse, 1e-5);
+        EXPECT_LT(d.maximum, 1e-4);
+    }
+}
+
+TEST_F(MeshTest, TheCameraMayBeInside)
+{
+    oracle::TetraMesh mesh = jittered(8);
+    oracle::sampleField(mesh, Bump());
+    const TwinMesh twin = makeTwin(mesh, colorfulPoints(), 0.1);
+    support::RenderOptions options;
+    options.size(96, 96).perspective(70.0).lookAt({0.45, 0.52, 0.4}, {0.9, 0.8, 0.6}, {0, 0, 1});
+    options.computeNearFar = false;
+    options.projection = osg::Matrixd::perspective(70.0, 1.0, 1e-4, 10.0);
+    oracle::Camera camera = support::oracleCamera(options);
+    camera.nearDepth = 1e-4;
+    const support::Difference d = support::compare(support::renderScene(twin.node, options),
+                                                   oracle::render(*twin.oracle, camera));
+    EXPECT_LT(d.rmse, 1e-5);
+    EXPECT_GT(d.pixels, 9000u);
+}
+
+TEST_F(MeshTest, MayBeFarAwayAndSmall)
+{
+    for (const glm::dmat4& map : {glm::translate(glm::dmat4(1.0), glm::dvec3(6.4e6, -3.2e6, 1.0e6)),
+                                  glm::scale(glm::dmat4(1.0), glm::dvec3(1e-6))}) {
+        oracle::TetraMesh mesh = jittered(8);
+        oracle::sampleField(mesh, Bump());
+        oracle::transform(mesh, map);
+        const double unit = 0.1 * std::cbrt(glm::determinant(glm::dmat3(map)));
+        const TwinMesh twin = makeTwin(mesh, colorfulPoints(), unit);
+        support::RenderOptions options;
+        const glm::dvec3 c(map * glm::dvec4(0.5, 0.5, 0.5, 1.0));
+        const osg::Vec3d center(c.x, c.y, c.z);
+        options.size(96, 96).perspective(30.0).lookAt(center + OBLIQUE * (0.87 * 10.0 * unit),
+                                                      center, {0.1, 0.2, 1.0});
+        EXPECT_LT(difference(twin, options, "faraway").rmse, 1e-5);
+    }
+}
+
+TEST_F(MeshTest, OtherRayFunctionsFindWhatTheyAskFor)
+{
+    oracle::TetraMesh mesh = jittered(6);
+    oracle::sampleField(mesh, oracle::RampField(glm::dvec3(0.1, 0.2, 0.4), 0.05));
+    const TwinMesh twin = makeTwin(mesh, {{0.0, {0, 0, 0, 1}}, {1.0, {1, 1, 1, 1}}}, 0.1);
+    const auto options = viewFrom(OBLIQUE, twin.node->getBound());
+    const oracle::Camera camera = support::oracleCamera(options);
+    const glm::dmat4 toWorld = glm::inverse(camera.view);
+    using A = VolumeAppearance;
+    for (const auto function : {A::MAXIMUM, A::MINIMUM, A::AVERAGE, A::ISOSURFACE}) {
+        twin.node->setRayFunction(function);
+        twin.node->setIsoValue(0.4);
+        const support::FloatImage picture = support::renderScene(twin.node, options);
+        support::savePicture(picture, std::string("mesh_") + A::RAY_FUNCTION_NAMES[function]);
+        double most = 0.0;
+        for (int y = 8; y < 96; y += 8)
+            for (int x = 8; x < 96; x += 8) {
+                const oracle::Ray eye = oracle::rayThrough(camera, x + 0.5, y + 0.5);
+                const glm::dvec3 origin(toWorld * glm::dvec4(eye.origin, 1.0));
+                const glm::dvec3 direction(toWorld * glm::dvec4(eye.direction, 0.0));
+                const auto parts = twin.oracle->segments(origin, direction, -INFINITY, INFINITY);
+                if (parts.empty()) continue;
+                const auto value = [&](double t) {
+                    return glm::dot(origin + t * direction, glm::dvec3(0.1, 0.2, 0.4)) + 0.05;
+                };
+                const double a = value(parts.front().enter), b = value(parts.back().leave);
+                const bool crosses = (a < 0.4) != (b < 0.4);
+                const double expected = function == A::MAXIMUM     ? std::max(a, b)
+                                        : function == A::MINIMUM   ? std::min(a, b)
+                                        : function == A::AVERAGE   ? 0.5 * (a + b)
+                                        : /* isosurface */ crosses ? 0.4
+                                                                   : RANGE.x;
+                const double shown = picture.pixels[std::size_t(y * 96 + x)].r;
+                most = std::max(most, std::abs(shown - (expected - RANGE.x)));
+            }
+        EXPECT_LT(most, 2e-3) << A::RAY_FUNCTION_NAMES[function];
+    }
+}
+
+TEST_F(MeshTest, OddCellsAreLeftOutAndCountedOnce)
+{
+    oracle::TetraMesh mesh = jittered(4);
+    mesh.points.emplace_back(0.3, 0.3, 0.3); // isolated
+    oracle::sampleField(mesh, Bump());
+    std::swap(mesh.cells[5][0], mesh.cells[5][1]);                              // inverted
+    mesh.scalars[mesh.cells[20][2]] = std::numeric_limits<double>::quiet_NaN(); // no value
+    mesh.scalars[mesh.cells[77][0]] = std::numeric_limits<double>::infinity();
+    oracle::TetraMesh odd = mesh;
+    odd.cells.push_back({0, 1, 1, 2}); // a point twice
+    odd.cells.push_back(odd.cells[7]); // a cell twice
+    odd.cells.push_back(odd.cells[9]);
+    std::swap(odd.cells.back()[0], odd.cells.back()[3]); // and in another order
+    const support::Reports reports;
+    TwinMesh twin = makeTwin(odd, colorfulPoints(), 0.1);
+    twin.oracle =
+        std::make_shared<oracle::MeshOracle>(mesh, oracle::Table(colorfulPoints(), RANGE), 0.1);
+    const auto bound = twin.node->getBound();
+    EXPECT_LT(difference(twin, viewFrom(OBLIQUE, bound), "odd").rmse, 1e-5);
+    EXPECT_LT(difference(twin, viewFrom({1.0, -3.0, 0.5}, bound), "odd2").rmse, 1e-5);
+    EXPECT_EQ(reports.all(), 1u);
+    for (const char* what : {"1 with a vertex twice", "2 of the same vertices", "1 inverted"})
+        EXPECT_EQ(reports.count(what), 1) << what;
+}
+
+TEST_F(MeshTest, FacesOfManyTetrahedraAndFlatOnes)
+{
+    // Three tetrahedra on one face, two of which overlap: of these the first on the ray is drawn.
+    oracle::TetraMesh mesh;
+    mesh.points = {{0, 0, 0},        {1, 0, 0},        {0, 1, 0},      {0.3, 0.3, 0.8},
+                   {0.2, 0.3, -0.8}, {0.4, 0.2, -0.5}, {0.5, 0.5, 0.0}};
+    mesh.cells = {{0, 1, 2, 3}, {0, 1, 2, 4}, {0, 1, 2, 5}, {0, 1, 2, 6}};
+    oracle::sampleField(mesh, Bump());
+    const support::Reports reports;
+    const TwinMesh twin = makeTwin(mesh, colorfulPoints(), 0.1);
+    const auto bound = twin.node->getBound();
+    EXPECT_LT(difference(twin, viewFrom(OBLIQUE, bound), "fan").rmse, 1e-5);
+    EXPECT_LT(difference(twin, viewFrom({0.5, -1.0, -3.0}, bound), "fan2").rmse, 1e-5);
+    for (const char* what : {"1 without volume", "1 faces of more than two"})
+        EXPECT_EQ(reports.count(what), 1) << what;
 }
 
 } // namespace MeshTest

@@ -44,18 +44,48 @@ std::array<Index, 3> without(const std::array<Index, 4>& v, std::size_t opposite
 }
 
 // Tetrahedra with four vertices.
-void takeCells(const TetraSet& set, TetraGraph& graph)
+std::vector<std::uint32_t> wholeCells(const TetraSet& set, TetraGraph& graph)
 {
-    for (std::size_t t = 0; t < set.tetraCount(); ++t) {
+    std::vector<std::uint32_t> cells;
+    for (std::uint32_t t = 0; t < set.tetraCount(); ++t) {
         const std::array<Index, 4> v = sortedVertices(set, t);
-        if (std::adjacent_find(v.begin(), v.end()) != v.end()) {
+        if (std::adjacent_find(v.begin(), v.end()) == v.end())
+            cells.push_back(t);
+        else
             ++graph.repeatedVertices;
-            continue;
-        }
+    }
+    return cells;
+}
+
+// Of cells with the same vertices the first one stays.
+void dropTwins(const TetraSet& set, const std::vector<Face>& faces, TetraGraph& graph)
+{
+    std::vector<std::uint32_t> twins;
+    const auto apex = [&](const Face& face) {
+        return sortedVertices(set, graph.numbers[face.cell])[face.opposite];
+    };
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        for (std::size_t k = i; k-- > 0 && faces[k].vertices == faces[i].vertices;)
+            if (faces[i].opposite == 0 && apex(faces[k]) == apex(faces[i])) {
+                twins.push_back(graph.numbers[faces[i].cell]);
+                break;
+            }
+    std::sort(twins.begin(), twins.end());
+    graph.twice = twins.size();
+    graph.numbers.erase(std::remove_if(graph.numbers.begin(), graph.numbers.end(),
+                                       [&twins](std::uint32_t t) {
+                                           return std::binary_search(twins.begin(), twins.end(), t);
+                                       }),
+                        graph.numbers.end());
+}
+
+void layOutCells(const TetraSet& set, TetraGraph& graph)
+{
+    for (const std::uint32_t t : graph.numbers) {
+        const std::array<Index, 4> v = sortedVertices(set, t);
         const double six = orientation(set, t);
         graph.flat += six == 0.0;
         graph.inverted += six < 0.0;
-        graph.numbers.push_back(static_cast<std::uint32_t>(t));
         graph.words.insert(graph.words.end(),
                            {v[0] ^ v[1] ^ v[2] ^ v[3], TetraGraph::OUTSIDE, TetraGraph::OUTSIDE,
                             TetraGraph::OUTSIDE, TetraGraph::OUTSIDE});
@@ -67,8 +97,8 @@ void takeCells(const TetraSet& set, TetraGraph& graph)
 std::vector<Face> facesOf(const TetraSet& set, const TetraGraph& graph)
 {
     std::vector<Face> faces;
-    faces.reserve(4 * graph.cellCount);
-    for (std::uint32_t cell = 0; cell < graph.cellCount; ++cell) {
+    faces.reserve(4 * graph.numbers.size());
+    for (std::uint32_t cell = 0; cell < graph.numbers.size(); ++cell) {
         const std::array<Index, 4> v = sortedVertices(set, graph.numbers[cell]);
         for (std::uint32_t i = 0; i < 4; ++i)
             faces.push_back({without(v, i), cell, i});
@@ -90,9 +120,8 @@ void addOuterFace(const TetraSet& set, const Face& face, TetraGraph& graph)
     ++graph.faceCount;
 }
 
-void joinCells(const TetraSet& set, TetraGraph& graph)
+void joinCells(const TetraSet& set, const std::vector<Face>& faces, TetraGraph& graph)
 {
-    const std::vector<Face> faces = facesOf(set, graph);
     graph.facesBegin = graph.words.size();
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t end = i + 1;
@@ -193,19 +222,24 @@ std::string TetraGraph::oddities() const
         if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
     };
     add(repeatedVertices, " with a vertex twice (left out)");
+    add(twice, " of the same vertices as another (left out)");
     add(flat, " without volume (nothing of them is seen)");
     add(inverted, " inverted (drawn as any)");
     add(nonManifoldFaces, " faces of more than two (of what overlaps there, the first is drawn)");
     if (text.empty()) return text;
-    return "of " + std::to_string(numbers.size() + repeatedVertices) + " tetrahedra there are " +
-           text;
+    return "of " + std::to_string(numbers.size() + repeatedVertices + twice) +
+           " tetrahedra there are " + text;
 }
 
 TetraGraph makeTetraGraph(const TetraSet& set)
 {
     TetraGraph graph;
-    takeCells(set, graph);
-    joinCells(set, graph);
+    graph.numbers = wholeCells(set, graph);
+    std::vector<Face> faces = facesOf(set, graph);
+    dropTwins(set, faces, graph);
+    if (graph.twice > 0) faces = facesOf(set, graph);
+    layOutCells(set, graph);
+    joinCells(set, faces, graph);
     fillGrid(set, graph);
     return graph;
 }

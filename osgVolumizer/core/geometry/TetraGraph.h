@@ -42,6 +42,7 @@ struct OSGVOLUMIZER_CORE_EXPORT TetraGraph
 
     // What is odd about the mesh.
     std::size_t repeatedVertices = 0; ///< tetrahedra with one vertex twice: left out
+    std::size_t twice = 0;            ///< of the same four vertices as another: left out
     std::size_t flat = 0;             ///< without volume: passed through, and nothing of them seen
     std::size_t inverted = 0;         ///< of negative orientation, where that is not the rule
     std::size_t nonManifoldFaces = 0; ///< of more than two tetrahedra: as outer faces of each

@@ -93,6 +93,36 @@ SeenPlace firstOpaque(ValueField* field, const PickLook& look, const std::vector
     return {};
 }
 
+// What the look's table is of: a fraction of the range of scalars, or the opacity of a colour.
+double valueWithoutVoxels(const PickLook& look, const Span& span, double parameter)
+{
+    constexpr double PLAIN = 0.5;
+    if (look.scalars) return look.fraction(span.scalarAt(parameter));
+    return look.plain ? PLAIN : span.colorAt(parameter).a;
+}
+
+// Scalars are linear in each span, and extreme at its ends.
+SeenPlace firstScalar(const PickLook& look, const std::vector<Span>& spans, double opacity)
+{
+    const bool extreme = look.rayFunction == A::MAXIMUM || look.rayFunction == A::MINIMUM;
+    const double sign = look.rayFunction == A::MINIMUM ? -1.0 : 1.0;
+    SeenPlace place;
+    double best = -std::numeric_limits<double>::infinity();
+    for (const Span& span : spans) {
+        const double a = look.fraction(span.scalarAt(span.begin));
+        const double b = look.fraction(span.scalarAt(span.end)), iso = look.isoFraction;
+        if (!extreme && (a < iso) != (b < iso))
+            return seenAt(span, span.begin + (iso - a) / (b - a) * (span.end - span.begin));
+        for (const bool end : {false, true}) {
+            const double value = end ? b : a;
+            if (!extreme || !(sign * value > best)) continue;
+            best = sign * value;
+            place = seenAt(span, end ? span.end : span.begin);
+        }
+    }
+    return extreme && place.found && look.opacity(sign * best) >= opacity ? place : SeenPlace();
+}
+
 // Of a cell in which the value crosses the iso-value between two parameters.
 double rootBetween(const CellPart& part, double iso, double low, double high)
 {
@@ -252,9 +282,8 @@ double opticalDepth(ValueField& field, const PickLook& look, const Span& span, d
 double opticalDepth(const PickLook& look, const Span& span, double units, double enough,
                     double& reached)
 {
-    constexpr double PLAIN = 0.5;
-    const RayStep step{span.begin, span.end, look.plain ? PLAIN : span.colorAt(span.begin).a, 0.0,
-                       look.plain ? PLAIN : span.colorAt(span.end).a};
+    const RayStep step{span.begin, span.end, valueWithoutVoxels(look, span, span.begin), 0.0,
+                       valueWithoutVoxels(look, span, span.end)};
     const double perExtinction = units * (span.end - span.begin);
     const double depth = perExtinction * stepExtinction(look, step);
     reached = span.end;
@@ -267,6 +296,9 @@ SeenPlace findSeenPlace(ValueField* field, const PickLook& look, const std::vect
                         double units, double opacity)
 {
     if (look.paints) return {};
+    const bool searched = look.rayFunction == A::ISOSURFACE || look.rayFunction == A::MAXIMUM ||
+                          look.rayFunction == A::MINIMUM;
+    if (!field && look.scalars && searched) return firstScalar(look, spans, opacity);
     if (!field) return firstOpaque(nullptr, look, spans, units, opacity);
     switch (look.rayFunction) {
     case A::MAXIMUM:

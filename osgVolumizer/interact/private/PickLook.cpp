@@ -48,17 +48,22 @@ TablePtr opacities()
     return table;
 }
 
-void setValues(const VolumeAppearance& appearance, PickLook& look)
+// Of values in a range.
+void setRange(const VolumeAppearance& appearance, const osg::Vec2d& range, PickLook& look)
 {
     static PickTables tables;
-    const Voxels& voxels = *appearance.getVoxels();
-    const osg::Vec2d range = voxels.getRange();
     const double width = range.y() - range.x();
-    look.rgba = voxels.getComponents() == 4;
     look.scale = 1.0 / width;
     look.offset = -range.x() / width;
     look.isoFraction = look.fraction(appearance.getIsoValue());
     look.table = look.rgba ? opacities() : tables.get(*appearance.getLookupTable(), range);
+}
+
+void setValues(const VolumeAppearance& appearance, PickLook& look)
+{
+    const Voxels& voxels = *appearance.getVoxels();
+    look.rgba = voxels.getComponents() == 4;
+    setRange(appearance, voxels.getRange(), look);
     const render::TexelFormat format = render::texelFormat(voxels, false);
     if (!look.rgba || format.fraction) return;
     const double full = format.type == VoxelType::UINT8    ? 255.0
@@ -80,14 +85,20 @@ double PickLook::meanExtinction(double from, double to) const
     return table->integral.mean(from, to).a;
 }
 
-PickLook makePickLook(const VolumeAppearance& appearance, const render::PreparedGeometry& prepared)
+PickLook makePickLook(const VolumeAppearance& appearance, const render::PreparedGeometry& prepared,
+                      const osg::Vec2d& scalarRange)
 {
     PickLook look;
     render::Reasons reasons; // a frame reports them
     look.opacityUnit = appearance.getEffectiveOpacityUnit();
-    look.voxels = appearance.getVoxels() != nullptr;
+    look.scalars = prepared.scalars;
+    look.voxels = render::voxelsIn(appearance, prepared) != nullptr;
     look.table = opacities();
-    look.plain = !look.voxels && prepared.tetras.vertices.format().colorSize == 0;
+    look.plain = !look.voxels && !look.scalars && prepared.tetras.vertices.format().colorSize == 0;
+    if (look.scalars) {
+        look.rayFunction = render::usedRayFunction(appearance, prepared, reasons);
+        setRange(appearance, scalarRange, look);
+    }
     if (!look.voxels) return look;
     look.paints = appearance.getCombineRule() == VolumeAppearance::PAINT;
     look.rayFunction = render::usedRayFunction(appearance, prepared, reasons);

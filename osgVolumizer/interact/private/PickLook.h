@@ -25,10 +25,11 @@ struct PickLook
 {
     VolumeAppearance::RayFunction rayFunction = VolumeAppearance::COMPOSITE;
     VolumeAppearance::Interpolation interpolation = VolumeAppearance::LINEAR;
-    bool before = false; ///< samples are looked up, and extinctions interpolated
-    bool paints = false; ///< shows nothing by itself
-    bool voxels = true;  ///< else vertex colours alone are shown
-    bool plain = false;  ///< not even those: half opaque a unit
+    bool before = false;  ///< samples are looked up, and extinctions interpolated
+    bool paints = false;  ///< shows nothing by itself
+    bool voxels = true;   ///< else vertex colours alone are shown
+    bool plain = false;   ///< not even those: half opaque a unit
+    bool scalars = false; ///< of an unstructured grid, in place of voxels
     /// Of RGBA voxels the values are opacities.
     bool rgba = false;
     /// Value in data units -> fraction of the range, or opacity: scale and offset.
@@ -49,7 +50,9 @@ struct PickLook
     }
 };
 
-PickLook makePickLook(const VolumeAppearance& appearance, const render::PreparedGeometry& prepared);
+/// \param scalarRange of a geometry with scalars
+PickLook makePickLook(const VolumeAppearance& appearance, const render::PreparedGeometry& prepared,
+                      const osg::Vec2d& scalarRange);
 
 } // namespace picking
 } // namespace osgVolumizer

@@ -23,13 +23,17 @@ class RegionCache : public PickData
 public:
     std::shared_ptr<const PickRegion> get(const VolumeGeometry& geometry, const Voxels* voxels)
     {
-        const Key key{geometry.getModifiedCount(), voxels, voxels ? voxels->getLayoutCount() : 0};
+        const auto scalars = geometry.getScalars();
+        const Key key{geometry.getModifiedCount(), voxels, voxels ? voxels->getLayoutCount() : 0,
+                      geometry.getScalarCount()};
         std::lock_guard<std::mutex> lock(_mutex);
         if (const auto* known = _regions.find(key)) return *known;
         const auto prepared =
             render::renderData<render::GeometryCache>(geometry)->get(geometry, voxels);
-        return _regions.add(key, prepared ? std::make_shared<const PickRegion>(prepared, voxels)
-                                          : nullptr);
+        return _regions.add(key, prepared
+                                     ? std::make_shared<const PickRegion>(
+                                           prepared, voxels, scalars, geometry.getScalarBinding())
+                                     : nullptr);
     }
 
 private:
@@ -37,11 +41,11 @@ private:
     {
         unsigned modifiedCount;
         const Voxels* voxels;
-        unsigned layoutCount;
+        unsigned layoutCount, scalarCount;
         bool operator==(const Key& o) const
         {
             return modifiedCount == o.modifiedCount && voxels == o.voxels &&
-                   layoutCount == o.layoutCount;
+                   layoutCount == o.layoutCount && scalarCount == o.scalarCount;
         }
     };
     std::mutex _mutex;
@@ -69,9 +73,11 @@ bool Segment::valid() const
 }
 
 PickRegion::PickRegion(std::shared_ptr<const render::PreparedGeometry> prepared,
-                       const Voxels* voxels)
+                       const Voxels* voxels, VolumeGeometry::ScalarsPtr scalars,
+                       VolumeGeometry::ScalarBinding binding)
     : _prepared(std::move(prepared)), _toFrame(glm::inverse(glm::dmat3(_prepared->frameToObject))),
-      _crossings(std::shared_ptr<const core::TetraSet>(_prepared, &_prepared->tetras))
+      _crossings(std::shared_ptr<const core::TetraSet>(_prepared, &_prepared->tetras)),
+      _scalars(std::move(scalars)), _binding(binding)
 {
     constexpr double END = std::numeric_limits<double>::infinity();
     _extent = {glm::dvec3(-END), glm::dvec3(END)};
@@ -98,12 +104,14 @@ std::vector<Span> PickRegion::spans(const Segment& segment,
                               segment.end, begin, finish))
             return {};
     const glm::dvec3 start = toFrame(segment.start), end = toFrame(segment.end);
-    if (_prepared->region && !hasColors()) return convexSpan(start, end, begin, finish);
+    if (_prepared->region && !hasColors() && !_scalars)
+        return convexSpan(start, end, begin, finish);
     std::vector<Span> spans;
     for (const auto& crossing : _crossings.find(start, end)) {
         Span span = spanOf(crossing, start, end);
         span.begin = std::max(span.begin, begin);
         span.end = std::min(span.end, finish);
+        if (!std::isfinite(span.scalar + span.scalarRate)) continue; // nothing is known there
         if (core::cutSegment(_extent, span.voxelAt(0.0), span.voxelAt(1.0), span.begin, span.end))
             addSpan(span, spans);
     }
@@ -156,7 +164,27 @@ Span PickRegion::spanOf(const core::TetraCrossings::Crossing& crossing, const gl
             line(format.voxelCoordinateOffset(), i, span.voxel[i], span.voxelRate[i]);
     for (int i = 0; i < format.colorSize; ++i)
         line(format.colorOffset(), i, span.color[i], span.colorRate[i]);
+    if (_scalars) setScalars(crossing, span);
     return span;
+}
+
+// Of one corner without a value the tetrahedron has none.
+void PickRegion::setScalars(const core::TetraCrossings::Crossing& crossing, Span& span) const
+{
+    if (_binding == VolumeGeometry::PER_TETRAHEDRON) {
+        span.scalar = (*_scalars)[crossing.tetrahedron];
+        return;
+    }
+    const auto* corners = &_prepared->tetras.indices[4 * std::size_t(crossing.tetrahedron)];
+    double a = 0.0, b = 0.0, all = 0.0;
+    for (int k = 0; k < 4; ++k) {
+        const double value = (*_scalars)[corners[k]];
+        all += value;
+        a += crossing.beginWeights[k] * value;
+        b += crossing.endWeights[k] * value;
+    }
+    span.scalarRate = (b - a) / (crossing.end - crossing.begin);
+    span.scalar = std::isfinite(all) ? a - crossing.begin * span.scalarRate : all;
 }
 
 std::uint32_t PickRegion::tetrahedronAt(const Segment& segment, double parameter) const

@@ -32,11 +32,13 @@ struct Span
     double begin = 0.0, end = 1.0;         ///< parameters of the segment
     glm::dvec3 voxel{0.0}, voxelRate{0.0}; ///< voxel frame: at parameter 0, and its change
     glm::dvec4 color{1.0}, colorRate{0.0}; ///< of vertices, likewise; RGBA, straight
+    double scalar = 0.0, scalarRate = 0.0; ///< of unstructured grids, likewise
     std::uint32_t tetrahedron = 0;         ///< where it is in one; see `inTetrahedron`
     bool inTetrahedron = false;
 
     glm::dvec3 voxelAt(double parameter) const { return voxel + parameter * voxelRate; }
     glm::dvec4 colorAt(double parameter) const { return color + parameter * colorRate; }
+    double scalarAt(double parameter) const { return scalar + parameter * scalarRate; }
 };
 
 /// The region of a geometry that is seen with voxels or none. Immutable; thread safe.
@@ -44,7 +46,8 @@ class PickRegion
 {
 public:
     /// Expects that there are tetrahedra.
-    PickRegion(std::shared_ptr<const render::PreparedGeometry> prepared, const Voxels* voxels);
+    PickRegion(std::shared_ptr<const render::PreparedGeometry> prepared, const Voxels* voxels,
+               VolumeGeometry::ScalarsPtr scalars, VolumeGeometry::ScalarBinding binding);
 
     const render::PreparedGeometry& prepared() const { return *_prepared; }
     bool hasColors() const { return _prepared->tetras.vertices.format().colorSize > 0; }
@@ -72,11 +75,14 @@ private:
                                  double finish) const;
     Span spanOf(const core::TetraCrossings::Crossing& crossing, const glm::dvec3& start,
                 const glm::dvec3& end) const;
+    void setScalars(const core::TetraCrossings::Crossing& crossing, Span& span) const;
 
     std::shared_ptr<const render::PreparedGeometry> _prepared;
     glm::dmat3 _toFrame;
     core::Box3d _extent;
     core::TetraCrossings _crossings;
+    VolumeGeometry::ScalarsPtr _scalars; ///< null for none
+    VolumeGeometry::ScalarBinding _binding;
 };
 
 /// The region, made once for each state of geometry and voxels; null where it is empty. `voxels`

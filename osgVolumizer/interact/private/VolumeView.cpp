@@ -32,12 +32,12 @@ render::TimeSteps stepsAt(const VolumeAppearance& appearance, double simulationT
 
 VolumeView::VolumeView(const VolumeGeometry& geometry, const VolumeAppearance& appearance,
                        double simulationTime)
-    : voxels(appearance.getVoxels())
+    : voxels(geometry.getScalars() ? nullptr : appearance.getVoxels())
 {
     if (voxels && !voxels->valid()) return;
     region = pickRegion(geometry, voxels.get());
     if (!region) return;
-    look = makePickLook(appearance, region->prepared());
+    look = makePickLook(appearance, region->prepared(), geometry.getScalarRange());
     if (voxels) steps = stepsAt(appearance, simulationTime);
     cut = render::cutInForce(appearance, region->prepared());
 }

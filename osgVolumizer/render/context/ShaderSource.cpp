@@ -59,8 +59,9 @@ std::set<std::string> namesIn(const std::string& code)
 {
     static const std::set<std::string> qualifiers = {"const", "flat", "in", "out", "uniform"};
     static const std::set<std::string> types = {
-        "void", "bool",  "int",   "float", "vec2",  "vec3",      "vec4",
-        "mat3", "ivec2", "ivec3", "mat4",  "TEXEL", "sampler3D", "samplerBuffer"};
+        "void", "bool",           "int",    "float", "vec2",  "vec3",      "vec4",
+        "mat3", "ivec2",          "ivec3",  "mat4",  "TEXEL", "sampler3D", "samplerBuffer",
+        "uint", "usamplerBuffer", "struct", "Known", "Corner"};
     std::set<std::string> names;
     std::istringstream lines(code);
     std::string line;

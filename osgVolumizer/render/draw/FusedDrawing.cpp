@@ -19,6 +19,8 @@ namespace render {
 
 namespace {
 
+constexpr int MOST_TETRAHEDRA = 1 << 16; // on one ray
+
 constexpr unsigned FIRST_MEMBER_UNIT = UNIT_CELLS; // before are those of the march
 
 // Hands out texture units; the same one for the same table.
@@ -105,6 +107,13 @@ bool setMarched(const FusedDrawing& drawing, const FusedMember& member, const Un
             return false;
         uniforms.set("cutField", static_cast<int>(cut));
     }
+    if (features.tetrahedra) {
+        const VolumeLook& look = *member.part->look;
+        const unsigned first = units.take(static_cast<unsigned>(look.tetrahedra->all().size()));
+        if (!units.suffice() ||
+            !setTetrahedra(*drawing.renderInfo.getState(), uniforms, look, first))
+            return false;
+    }
     if (!drawing.part.features.inOrder && isHomogeneous(member))
         uniforms.set("stepsPerDepth", 0.0f);
     return setBatch(batch, member.batch);
@@ -124,6 +133,8 @@ bool setMembers(const FusedDrawing& drawing, const osg::Program::PerContextProgr
         // What it is cut into, and its paints cut besides.
         mostSteps +=
             members[i].part->look->maximumSteps + 2 * (members[i].part->features.paintCount + 1);
+        // Steps end with tetrahedra, too.
+        if (members[i].part->features.tetrahedra) mostSteps += MOST_TETRAHEDRA;
     }
     for (unsigned unit = FIRST_MEMBER_UNIT; unit < units.taken(); ++unit)
         drawing.renderInfo.getState()->haveAppliedTextureAttribute(unit,
@@ -153,6 +164,9 @@ void drawMembersApart(const FusedDrawing& drawing, const BrickBatch& triangles)
             if (!applyCutField(state, member.part->look->cut, unit)) continue;
             uniforms.set("cutField", static_cast<int>(unit));
         }
+        if (member.part->features.tetrahedra &&
+            !setTetrahedra(state, uniforms, *member.part->look, tetraUnitOf(member.part->features)))
+            continue;
         const core::View view{member.frameToEye, drawing.projection};
         BrickBatch batch = member.batch;
         batch.firstIndex = triangles.firstIndex;

@@ -38,7 +38,8 @@ std::string undefined(const std::string& defines)
 std::string memberCode(const ProgramFeatures& features, bool inOrder)
 {
     const std::string code = volumeSource(features);
-    const std::string rays = rayShaderSource(features.rayFunction);
+    const bool closedForm = inOrder && features.isExact();
+    const std::string rays = closedForm ? "" : rayShaderSource(features.rayFunction);
     if (inOrder)
         return code + rays + shaderSource(features.tetrahedra ? "mesh.glsl" : "brick.glsl");
     return code + shaderSource("member.glsl") + rays;

@@ -30,8 +30,9 @@ unsigned lightsOn(const VolumeInstance& volume)
 bool canBeFused(const MergedVolume& volume)
 {
     const ProgramFeatures& features = volume.instance->look->features;
-    return !volume.sliced && features.voxels && !features.tetrahedra && !features.gathers() &&
-           volume.instance->above.isUsual() && !volume.instance->bricks.empty();
+    const bool joins = features.tetrahedra ? features.integratesLight() : features.voxels;
+    return !volume.sliced && joins && !features.gathers() && volume.instance->above.isUsual() &&
+           !volume.instance->bricks.empty();
 }
 
 // Whether two have the same state above them, as far as it matters to what is drawn at once.
@@ -55,6 +56,8 @@ int unitsOf(const std::vector<const VolumeInstance*>& volumes)
         const std::size_t paints = volume->paints ? 2 * volume->paints->size() : 0;
         const std::size_t steps = static_cast<std::size_t>(volume->steps.count());
         const std::size_t cut = volume->look->features.cutField ? 1 : 0;
+        if (volume->look->tetrahedra)
+            units += volume->bricks.size() * volume->look->tetrahedra->all().size();
         units += volume->bricks.size() * ((volume->skipping ? 1u : 0u) + steps + paints + cut);
     }
     return static_cast<int>(units + tables.size());

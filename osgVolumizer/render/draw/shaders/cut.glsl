@@ -47,7 +47,8 @@ float keptShare(float before, float after)
 
 float keptAbout(vec3 origin, vec3 direction, float t, float dt)
 {
-    return keptShare(cutDistance(origin + (t - 0.5 * dt) * direction), cutDistance(origin + (t + 0.5 * dt) * direction));
+    return keptShare(cutDistance(cutPoint(origin, direction, t - 0.5 * dt)),
+                     cutDistance(cutPoint(origin, direction, t + 0.5 * dt)));
 }
 
 // Of pieces one after another.

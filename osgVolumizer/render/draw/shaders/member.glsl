@@ -16,12 +16,18 @@ void findPart(float tNear, float tFar, inout vec2 all)
     region = vec2(max(region.x, tNear), min(region.y, tFar));
     shown = boxSegment(clipMin, clipMax, memberOrigin, memberDirection);
     shown = vec2(max(region.x, shown.x), min(region.y, shown.y));
-#ifdef SKIPPING
+#ifdef TETRAHEDRA
+    shown = region;
+    beginWalk(memberOrigin, memberDirection);
+#elif defined(SKIPPING)
     if (shown.x < shown.y) shown = occupiedPart(memberOrigin, memberDirection, shown.x, shown.y);
 #endif
     if (!(shown.x < shown.y)) shown = vec2(1e30, -1e30);
     all = vec2(min(all.x, shown.x), max(all.y, shown.y));
     period = 1.0 / stepsPerDepth;
+#ifdef TETRAHEDRA
+    segment = shown;
+#else
     vec2 steps = (shown - region.x) * stepsPerDepth;
     segment = stepsPerDepth > 0.0 ? min(region.x + vec2(floor(steps.x), ceil(steps.y)) * period, region.yy) : shown;
 #ifdef PREINTEGRATED
@@ -31,12 +37,28 @@ void findPart(float tNear, float tFar, inout vec2 all)
 #endif
     placeOrigin = placeOf(memberOrigin);
     placeRate = VOXEL_LENGTH * memberDirection;
+#endif
     unitsPerDepth = length(frameToUnits * memberDirection);
 #ifdef SHADING
     findEyeRay();
 #endif
 }
 
+#ifdef TETRAHEDRA
+// Steps end where tetrahedra do: no step goes beyond the one at hand.
+void cutStep(float t, inout float end)
+{
+    if (left.depth <= t && walked < mostTetrahedra) {
+        if (tetrahedron < 0) {
+            if (!enterMesh()) left.depth = 1e30;
+        } else {
+            crossTetrahedron();
+        }
+    }
+    float next = partBegin > t ? partBegin : min(t + period, left.depth);
+    end = min(end, hasPart ? next : max(left.depth, t));
+}
+#else
 // Moves the end of the step that begins at t to where the member's is, or where the member, or its paint, begins.
 void cutStep(float t, inout float end)
 {
@@ -46,6 +68,7 @@ void cutStep(float t, inout float end)
     end = nextCut(memberOrigin, memberDirection, t, end);
 #endif
 }
+#endif
 
 // Adds a sample: extinction times colour, and extinction, per unit of depth.
 void addClassified(vec4 c, vec3 place, float t, inout vec4 sum)

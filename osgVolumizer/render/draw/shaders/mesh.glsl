@@ -43,13 +43,13 @@ void goOn(float tNear, out float rate)
         crossTetrahedron();
         at = hasPart ? entered.depth : left.depth;
 #ifdef SCALARS
-        scalarAt = entered.scalar;
+        if (hasPart) scalarAt = entered.scalar;
 #endif
     }
     float skipped = clamp(max(tNear, partBegin), at, left.depth) - at;
     rate = 1.0 / max(left.depth - entered.depth, 1e-30);
 #ifdef SCALARS
-    rate *= left.scalar - entered.scalar;
+    rate *= hasPart ? left.scalar - entered.scalar : 0.0; // perhaps not even finite
     scalarAt += skipped * rate;
 #endif
     at += skipped;
@@ -60,7 +60,7 @@ void goOn(float tNear, out float rate)
 void findPiece(float tFar, float rate, out float next, out float scalarNext, out vec4 c0, out vec4 c1)
 {
     next = min(left.depth, tFar);
-    scalarNext = next < left.depth ? scalarAt + (next - at) * rate : left.scalar;
+    scalarNext = next < left.depth ? scalarAt + (next - at) * rate : hasPart ? left.scalar : scalarAt;
     bool up = scalarNext >= scalarAt;
     bool higher = up ? scalarAt >= pointHigh : scalarAt > pointHigh;
     bool lower = up ? scalarAt < pointLow : scalarAt <= pointLow;
@@ -131,13 +131,8 @@ vec4 light(float tNear, float tFar)
 // Of the tetrahedron that is walked through, between two depths.
 vec4 lightOfPart(float tNear, float tFar)
 {
-    float perDepth = 1.0 / max(left.depth - entered.depth, 1e-30);
-#ifdef PLACES
-    rayVoxelRate = (left.place - entered.place) * perDepth;
-    rayVoxelOrigin = entered.place - entered.depth * rayVoxelRate;
-#elif defined(SCALARS)
-    rayVoxelRate = vec3((left.scalar - entered.scalar) * perDepth, 0.0, 0.0);
-    rayVoxelOrigin = vec3(entered.scalar, 0.0, 0.0) - entered.depth * rayVoxelRate;
+#if defined(PLACES) || defined(SCALARS)
+    takeVoxelRay();
 #endif
 #ifdef VOXELS
     vec2 shown = boxSegment(clipMin, clipMax, VOXEL_RAY(origin, direction));

@@ -128,10 +128,24 @@ float voxelAt(vec3 place) { return place.x; }
 vec3 rayVoxelOrigin, rayVoxelRate;
 #define VOXEL_RAY(origin, direction) rayVoxelOrigin, rayVoxelRate
 #define VOXEL_RATE(direction) (VOXEL_LENGTH * rayVoxelRate)
-vec3 placeOnRay(vec3 origin, vec3 direction, float t) { return placeOf(rayVoxelOrigin + t * rayVoxelRate); }
+vec3 voxelOnRay(vec3 origin, vec3 direction, float t) { return rayVoxelOrigin + t * rayVoxelRate; }
+
+// Of the tetrahedron that is walked through.
+void takeVoxelRay()
+{
+    float perDepth = 1.0 / max(left.depth - entered.depth, 1e-30);
+#ifdef PLACES
+    rayVoxelRate = (left.place - entered.place) * perDepth;
+    rayVoxelOrigin = entered.place - entered.depth * rayVoxelRate;
+#else
+    rayVoxelRate = vec3((left.scalar - entered.scalar) * perDepth, 0.0, 0.0);
+    rayVoxelOrigin = vec3(entered.scalar, 0.0, 0.0) - entered.depth * rayVoxelRate;
+#endif
+}
 #else
 #define VOXEL_RAY(origin, direction) origin, direction
 #define VOXEL_RATE(direction) (VOXEL_LENGTH * direction)
-vec3 placeOnRay(vec3 origin, vec3 direction, float t) { return placeOf(origin + t * direction); }
+vec3 voxelOnRay(vec3 origin, vec3 direction, float t) { return origin + t * direction; }
 #endif
+vec3 placeOnRay(vec3 origin, vec3 direction, float t) { return placeOf(voxelOnRay(origin, direction, t)); }
 #endif

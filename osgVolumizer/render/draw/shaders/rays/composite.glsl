@@ -4,7 +4,36 @@
 #define JOIN_RAY(front, behind) (front + (1.0 - front.a) * behind)
 #define RAY_DONE(light) (light.a >= 1.0 - OPAQUE_ENOUGH)
 
-#if defined(MEMBER) && defined(PREINTEGRATED)
+#if defined(MEMBER) && defined(TETRAHEDRA)
+// Adds to a step about t: extinction times colour, and extinction, per unit of depth.
+void addLight(float t, float dt, inout vec4 sum)
+{
+    if (!hasPart || t < partBegin || t >= left.depth || t < segment.x || t >= segment.y) return;
+    vec3 place = vec3(0.0);
+#if defined(PLACES) || defined(SCALARS)
+    takeVoxelRay();
+#endif
+#ifdef VOXELS
+    vec3 voxel = voxelOnRay(memberOrigin, memberDirection, t);
+    if (any(lessThan(voxel, clipMin)) || any(greaterThan(voxel, clipMax))) return;
+#endif
+#if defined(VOXELS) || defined(SCALARS)
+    place = placeOnRay(memberOrigin, memberDirection, t);
+    vec4 c = classify(place);
+#ifdef VERTEX_COLORS
+    c *= colorOnRay(t);
+#endif
+#else
+    vec4 c = colorOnRay(t);
+    c.a = extinctionOf(c.a);
+#endif
+    c.a *= keptAbout(memberOrigin, memberDirection, t, dt);
+    addClassified(c, place, t, sum);
+}
+float surfaceOnRay() { return 1e30; }
+void addSurface(float t, inout vec3 color, inout float through) {}
+
+#elif defined(MEMBER) && defined(PREINTEGRATED)
 float knownDepth = -1e30; // where the entry and the integral of the last step's end are known
 float knownEntry;
 vec4 knownIntegral;
