@@ -27,6 +27,17 @@ double RampField::value(const glm::dvec3& p) const
     return _offset + dot(_slope, p);
 }
 
+void RampField::appendBreaks(const glm::dvec3& origin, const glm::dvec3& direction, double t0,
+                             double t1, const std::vector<double>& values,
+                             std::vector<double>& breaks) const
+{
+    const double slope = dot(_slope, direction);
+    for (double v : values) {
+        const double t = (v - value(origin)) / slope;
+        if (t > t0 && t < t1) breaks.push_back(t);
+    }
+}
+
 glm::dvec3 ProductField::gradient(const glm::dvec3& p) const
 {
     return _scale * glm::dvec3(p.y * p.z, p.x * p.z, p.x * p.y);

@@ -40,6 +40,10 @@ public:
     RampField(const glm::dvec3& slope, double offset) : _slope(slope), _offset(offset) {}
     double value(const glm::dvec3& p) const override;
     glm::dvec3 gradient(const glm::dvec3&) const override { return _slope; }
+    /// Where it takes the values.
+    void appendBreaks(const glm::dvec3& origin, const glm::dvec3& direction, double t0, double t1,
+                      const std::vector<double>& values,
+                      std::vector<double>& breaks) const override;
 
 private:
     glm::dvec3 _slope;

@@ -1,11 +1,10 @@
+#include "ForEachPixel.h"
 #include "Quadrature.h"
 #include "Ray.h"
 #include "ScreenTriangles.h"
 
 #include <algorithm>
-#include <atomic>
 #include <set>
-#include <thread>
 
 namespace osgVolumizer {
 namespace oracle {
@@ -135,25 +134,6 @@ std::set<std::pair<const Volume*, int>> silhouetteKey(const Path& path)
     return key;
 }
 
-template <class PerPixel>
-support::FloatImage forEachPixel(const Camera& camera, PerPixel perPixel)
-{
-    support::FloatImage image(camera.width, camera.height);
-    std::atomic<int> nextRow{0};
-    const auto work = [&] {
-        for (int y = nextRow++; y < camera.height; y = nextRow++)
-            for (int x = 0; x < camera.width; ++x)
-                image.at(x, y) = glm::vec4(perPixel(x + 0.5, y + 0.5));
-    };
-    std::vector<std::thread> others;
-    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i)
-        others.emplace_back(work);
-    work();
-    for (std::thread& thread : others)
-        thread.join();
-    return image;
-}
-
 // Light along what a ray meets, over the background.
 glm::dvec4 lightOf(const Path& path, const Scene& scene)
 {
@@ -185,8 +165,8 @@ glm::dvec4 trace(const Scene& scene, const Camera& camera, double x, double y)
 support::FloatImage render(const Scene& scene, const Camera& camera)
 {
     const ScreenTriangles triangles(scene, camera);
-    return forEachPixel(camera, [&](double x, double y) {
-        return lightOf(meet(scene, triangles, camera, x, y), scene);
+    return forEachPixel(camera.width, camera.height, [&](int x, int y) {
+        return lightOf(meet(scene, triangles, camera, x + 0.5, y + 0.5), scene);
     });
 }
 
@@ -196,7 +176,8 @@ support::FloatImage awayFromSilhouettes(const Scene& scene, const Camera& camera
     const auto keyAt = [&](double x, double y) {
         return silhouetteKey(meet(scene, triangles, camera, x, y));
     };
-    return forEachPixel(camera, [&](double x, double y) {
+    return forEachPixel(camera.width, camera.height, [&](int column, int row) {
+        const double x = column + 0.5, y = row + 0.5;
         const auto key = keyAt(x, y);
         for (int corner = 0; corner < 4; ++corner) {
             const double u = x + (corner & 1 ? margin : -margin);
