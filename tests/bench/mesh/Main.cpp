@@ -18,7 +18,7 @@ namespace {
 const char* const usage = R"(Usage: osgVolumizerMeshChart [options]
   --scenes A,B,..     of smooth smooth-ortho peak; default all
   --renderers A,B,..  of library projected preintegrated partial linear (all but the first are
-                      VTK's); default library,projected,preintegrated
+                      VTK's); default library,projected,preintegrated,partial
   --sizes A,B,..      hexahedra along each axis, of five tetrahedra each; default 13,27,40,58. A
                       renderer whose frames take more than --patience is not measured at larger ones
   --patience SECONDS  default 10
@@ -30,7 +30,7 @@ const char* const usage = R"(Usage: osgVolumizerMeshChart [options]
 struct Arguments
 {
     std::vector<std::string> scenes = meshSceneNames();
-    std::vector<std::string> renderers{"library", "projected", "preintegrated"};
+    std::vector<std::string> renderers{"library", "projected", "preintegrated", "partial"};
     std::vector<std::string> sizes{"13", "27", "40", "58"};
     double patience = 10.0;
     int rounds = 5;

@@ -4,6 +4,7 @@
 
 #include <oracles/Table.h>
 
+#include <vtkCamera.h>
 #include <vtkCellType.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkFloatArray.h>
@@ -53,7 +54,7 @@ vtkSmartPointer<vtkUnstructuredGrid> gridOf(const oracle::TetraMesh& mesh)
 // [0, 1], of which projected tetrahedra keep 8 bits.
 void setTable(vtkVolumeProperty& property, const TablePoints& table, double unit)
 {
-    constexpr double STEP = 1.0 / 64.0; // of opacity
+    constexpr double STEP = 1.0 / 32.0; // of opacity
     TablePoints fine{table.front()};
     for (std::size_t i = 1; i < table.size(); ++i) {
         const auto &a = table[i - 1], &b = table[i];
@@ -124,6 +125,7 @@ public:
         setTable(*volume->GetProperty(), scene.table, scene.unit);
         volume->SetMapper(mapper);
         _window.renderer().AddVolume(volume);
+        if (_technique != VtkMeshTechnique::PROJECTED) moveByHalfAPixel(view);
         _window.setView(view);
         return {};
     }
@@ -132,6 +134,12 @@ public:
     support::FloatImage picture() override { return _window.picture(); }
 
 private:
+    // Its rays go through the lower left corners of pixels, not through their centres.
+    void moveByHalfAPixel(const support::RenderOptions& view)
+    {
+        _window.renderer().GetActiveCamera()->SetWindowCenter(1.0 / view.width, 1.0 / view.height);
+    }
+
     VtkMeshTechnique _technique;
     VtkWindow _window;
 };
