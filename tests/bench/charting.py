@@ -68,9 +68,10 @@ def number(value):
     return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e")
 
 
-def draw_axes(panel, across, up, across_tick="{:g}".format, up_tick=number, factors=(1, 2, 5)):
-    """The frame, grid, and both names. Ticks are labelled by the functions; those going across are the
-    factors times powers of ten, or these alone where there are many."""
+def draw_axes(panel, across, up, across_tick="{:g}".format, up_tick=number, factors=(1, 2, 5),
+              up_factors=(1,)):
+    """The frame, grid, and both names. Ticks are labelled by the functions; they are the factors times
+    powers of ten, and across these alone where there are many."""
     right, bottom = panel.left + PANEL_WIDTH, panel.top + PANEL_HEIGHT
     out = [f'<rect x="{panel.left}" y="{panel.top}" width="{PANEL_WIDTH}" height="{PANEL_HEIGHT}" '
            'fill="none" stroke="#888"/>',
@@ -82,7 +83,7 @@ def draw_axes(panel, across, up, across_tick="{:g}".format, up_tick=number, fact
         x, _ = panel.at(value, 10.0 ** panel.y[0])
         out.append(f'<path d="M{x:.1f} {panel.top}V{bottom}" stroke="#e2e2e2"/>')
         out.append(text(x, bottom + 15, across_tick(value)))
-    for value in panel.ticks(*panel.y, (1,)):
+    for value in panel.ticks(*panel.y, up_factors):
         _, y = panel.at(10.0 ** panel.x[0], value)
         out.append(f'<path d="M{panel.left} {y:.1f}H{right}" stroke="#e2e2e2"/>')
         out.append(text(panel.left - 5, y + 4, up_tick(value), "end"))

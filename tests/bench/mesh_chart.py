@@ -59,7 +59,8 @@ def draw_panel(left, top, title, description, up, curves):
     curves = {name: [p for p in points if p[1] > 0] for name, points in curves.items()}
     panel = Panel(left, top, [p for points in curves.values() for p in points])
     out = draw_title(panel, title, description)
-    out += draw_axes(panel, "tetrahedra", up, number, number if up.startswith("root") else "{:g}".format, (1, 3))
+    out += draw_axes(panel, "tetrahedra", up, number, number if up.startswith("root") else "{:g}".format, (1, 3),
+                     (1, 3))
     for name in reversed(list(STYLES)):  # ours on top
         if curves.get(name):
             out += draw_curve(panel, curves[name], STYLES[name], 2.6 if name == LIBRARY else 1.5)

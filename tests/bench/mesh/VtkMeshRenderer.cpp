@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 namespace osgVolumizer {
 namespace bench {
@@ -88,6 +89,7 @@ vtkSmartPointer<vtkUnstructuredGridVolumeMapper> mapperOf(VtkMeshTechnique techn
     mapper->SetAutoAdjustSampleDistances(0);
     mapper->SetImageSampleDistance(1.0f);
     mapper->SetIntermixIntersectingGeometry(0); // there is none
+    mapper->SetNumberOfThreads(int(std::max(1u, std::thread::hardware_concurrency())));
     if (technique == VtkMeshTechnique::RAYS_PARTIAL)
         mapper->SetRayIntegrator(vtkNew<vtkUnstructuredGridPartialPreIntegration>());
     if (technique == VtkMeshTechnique::RAYS_LINEAR)
