@@ -1,4 +1,4 @@
-# Sourced by tests/run.sh, tests/bench/chart.sh and examples/demo.sh: the Debian packages that each
+# Sourced by tests/run.sh, tests/bench/charting.sh and examples/demo.sh: the Debian packages that each
 # needs, and install_missing PACKAGE..., which installs those that are not there, and calls apt-get
 # only if there are any.
 
@@ -16,10 +16,10 @@ TEST_PACKAGES="libgtest-dev libgl1-mesa-dri openscenegraph xvfb xauth clang-14 l
 # What examples/demo.sh needs on top, and what else where there is no display.
 DEMO_PACKAGES="openscenegraph libgl1-mesa-dri"
 HEADLESS_DEMO_PACKAGES="xvfb imagemagick"
-# What tests/bench/chart.sh needs on top: GoogleTest, since benchmarks are among the tests, the peers
-# in OpenSceneGraph, and a display for VTK.
+# What the charts (tests/bench/charting.sh) need on top: GoogleTest, since benchmarks are among the
+# tests, the peers in OpenSceneGraph, and a display for VTK.
 CHART_PACKAGES="libgtest-dev libgl1-mesa-dri openscenegraph xvfb xauth python3"
-# Readers of .vtk and .vtu files, and two of the chart's peers; all goes without it.
+# Readers of .vtk and .vtu files, and peers in the charts; all goes without it.
 VTK_PACKAGES="libvtk9-dev"
 # The reader of TIFF with depth, and of other rare ones; all goes without it.
 TIFF_PACKAGES="libtiff-dev"

@@ -47,7 +47,7 @@ TEST(Packages, AreNamedInNoScriptItself)
     static const std::regex call("install_missing([^\n]*)");
     static const std::regex variables("( \\$[A-Za-z_0-9]*)+( \\|\\|.*)?");
     for (const char* script :
-         {"tests/run.sh", "tests/bench/chart.sh", "examples/demo.sh", "examples/pictures.sh"}) {
+         {"tests/run.sh", "tests/bench/charting.sh", "examples/demo.sh", "examples/pictures.sh"}) {
         const std::string text = textOf(source / script);
         int calls = 0;
         for (std::sregex_iterator i(text.begin(), text.end(), call), end; i != end; ++i, ++calls)

@@ -1,5 +1,6 @@
 // Time against error of volume renderers: see ../chart.sh.
 
+#include "../support/CommandLine.h"
 #include "Measure.h"
 
 #include <osg/Notify>
@@ -9,7 +10,6 @@
 #include <cstring>
 #include <fstream>
 #include <iostream>
-#include <sstream>
 
 using namespace osgVolumizer;
 using namespace osgVolumizer::bench;
@@ -43,15 +43,6 @@ struct Arguments
     int frames = 20;
 };
 
-std::vector<std::string> split(const std::string& text)
-{
-    std::vector<std::string> parts;
-    std::istringstream in(text);
-    for (std::string part; std::getline(in, part, ',');)
-        parts.push_back(part);
-    return parts;
-}
-
 bool parse(int argc, char** argv, Arguments& a)
 {
     for (int i = 1; i < argc; ++i) {
@@ -67,9 +58,9 @@ bool parse(int argc, char** argv, Arguments& a)
         if (i + 1 == argc) return false;
         const std::string value = argv[++i];
         if (key == "--scenes")
-            a.scenes = split(value);
+            a.scenes = splitList(value);
         else if (key == "--renderers")
-            a.renderers = split(value);
+            a.renderers = splitList(value);
         else if (key == "--rounds")
             a.measure.rounds = std::atoi(value.c_str());
         else if (key == "--frames")
@@ -78,7 +69,7 @@ bool parse(int argc, char** argv, Arguments& a)
             a.csv = value;
         else if (key == "--steps") {
             a.measure.steps.clear();
-            for (const auto& s : split(value))
+            for (const auto& s : splitList(value))
                 a.measure.steps.push_back(std::atof(s.c_str()));
         } else
             return false;
@@ -99,14 +90,6 @@ std::vector<RendererPtr> makeRenderers(const std::vector<std::string>& names)
     return result;
 }
 
-std::string joined(const std::vector<double>& values)
-{
-    std::ostringstream out;
-    for (double v : values)
-        out << (out.tellp() > 0 ? ";" : "") << v;
-    return out.str();
-}
-
 void printPoint(const Point& p)
 {
     std::printf("  %-28s step %5.3f %9.2f ms %9.2f cpu  rmse %.2e max %.2e bias %+.2e\n",
@@ -119,8 +102,8 @@ void writePoint(std::ostream& csv, const Point& p, const ChartScene& scene, cons
     csv << p.scene << ",\"" << scene.description << "\"," << p.renderer << ',' << p.step << ','
         << p.difference.pixels << ',' << r.remainingError << ',' << p.difference.rmse << ','
         << p.difference.maximum << ',' << p.difference.bias << ',' << median(p.milliseconds) << ','
-        << median(p.cpuMilliseconds) << ',' << joined(p.milliseconds) << ','
-        << joined(p.cpuMilliseconds) << std::endl;
+        << median(p.cpuMilliseconds) << ',' << joinValues(p.milliseconds) << ','
+        << joinValues(p.cpuMilliseconds) << std::endl;
 }
 
 void chart(const Arguments& a, const std::vector<ChartScene>& scenes)

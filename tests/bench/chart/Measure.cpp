@@ -1,10 +1,9 @@
 #include "Measure.h"
 
-#include <sys/resource.h>
+#include "../support/CompareOverBlack.h"
+#include "../support/FrameTime.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <iostream>
 
 namespace osgVolumizer {
@@ -16,30 +15,6 @@ namespace {
 // another model.
 constexpr double SHADED_REFERENCE_STEP = 1.0 / 16.0;
 
-double cpuMilliseconds()
-{
-    rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    const auto ms = [](const timeval& t) {
-        return 1e3 * double(t.tv_sec) + 1e-3 * double(t.tv_usec);
-    };
-    return ms(usage.ru_utime) + ms(usage.ru_stime);
-}
-
-// What a screen shows: alpha is left out, since some of the peers write none that means anything.
-support::Difference compareOverBlack(support::FloatImage a, support::FloatImage b,
-                                     const support::Mask& mask)
-{
-    for (glm::vec4& p : a.pixels)
-        p.a = 0.0f;
-    for (glm::vec4& p : b.pixels)
-        p.a = 0.0f;
-    support::Difference d = support::compare(a, b, mask);
-    d.rmse *= std::sqrt(4.0 / 3.0); // over three channels
-    d.bias *= 4.0 / 3.0;
-    return d;
-}
-
 // A renderer whose frames take longer than this is not measured at finer steps.
 constexpr double PATIENCE_MILLISECONDS = 500.0;
 
@@ -49,14 +24,6 @@ void drawAt(Renderer& renderer, double step)
     const Status status = renderer.setStep(step);
     if (!status.ok()) std::cerr << renderer.name() << ": " << status.text << "\n";
     renderer.frame();
-}
-
-double timeFrame(Renderer& renderer)
-{
-    const auto start = std::chrono::steady_clock::now();
-    renderer.frame();
-    const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
-    return wall.count();
 }
 
 // A renderer that could be opened, and what its pictures are compared with.
@@ -115,9 +82,9 @@ std::vector<Point> measure(const ChartScene& scene, const Reference& reference,
                     if (options.pictures && step == options.steps.back())
                         support::savePicture(picture, "chart " + scene.name + " " + point.renderer);
                 }
-                const double cpu = cpuMilliseconds();
-                point.milliseconds.push_back(timeFrame(renderer));
-                point.cpuMilliseconds.push_back(cpuMilliseconds() - cpu);
+                const FrameTime time = timeFrame(renderer);
+                point.milliseconds.push_back(time.wall);
+                point.cpuMilliseconds.push_back(time.cpu);
                 if (round == 0 && point.milliseconds.front() > PATIENCE_MILLISECONDS)
                     measured[e] = s + 1;
             }
@@ -132,7 +99,7 @@ std::vector<double> drawFrames(Renderer& renderer, int count)
 {
     std::vector<double> milliseconds;
     for (int i = 0; i < count; ++i)
-        milliseconds.push_back(timeFrame(renderer));
+        milliseconds.push_back(timeFrame(renderer).wall);
     return milliseconds;
 }
 

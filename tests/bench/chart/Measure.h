@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../Median.h"
+#include "../support/Median.h"
 #include "Reference.h"
 #include "Renderer.h"
 

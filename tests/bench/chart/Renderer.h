@@ -1,5 +1,6 @@
 #pragma once
 
+#include "../support/FrameRenderer.h"
 #include "Scenes.h"
 
 #include <map>
@@ -8,23 +9,14 @@
 namespace osgVolumizer {
 namespace bench {
 
-/// One way to draw a ChartScene. All draw to a 32-bit float target unless stated, into contexts of
-/// their own, and nothing of what comes before frame() is timed.
-class Renderer
+/// One way to draw a ChartScene.
+class Renderer : public FrameRenderer
 {
 public:
-    virtual ~Renderer() = default;
-
-    /// Identifies the curve.
-    virtual std::string name() const = 0;
     /// Makes everything that does not depend on the step. Not ok: this renderer cannot draw it.
     virtual Status open(const ChartScene& scene) = 0;
     /// Distance between samples along the view, in voxels.
     virtual Status setStep(double stepVoxel) = 0;
-    /// Draws one frame, to the end of glFinish.
-    virtual void frame() = 0;
-    /// Reads back what the last frame drew: premultiplied, bottom row first.
-    virtual support::FloatImage picture() = 0;
     /// Where the time of the last frame went, milliseconds by name; empty where that is not known.
     virtual std::map<std::string, double> split() { return {}; }
 };

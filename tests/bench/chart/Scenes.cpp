@@ -1,5 +1,7 @@
 #include "Scenes.h"
 
+#include "../support/Tables.h"
+
 #include <osgVolumizer/LookupTable.h>
 #include <osgVolumizer/ReadVoxels.h>
 
@@ -13,14 +15,13 @@ namespace bench {
 
 namespace {
 
-using Points = std::vector<core::TransferFunction::Point>;
 using ScalarFunction = std::function<double(const glm::dvec3&)>;
 
 constexpr int SIZE = 128;
 
 // Function of the object coordinate with values in [0, 1], stored over the whole range of the type.
 ChartVolume makeVolume(const glm::ivec3& size, const glm::dvec3& origin, VoxelType type,
-                       const ScalarFunction& f, const Points& table)
+                       const ScalarFunction& f, const TablePoints& table)
 {
     ChartVolume volume;
     volume.size = size;
@@ -53,28 +54,6 @@ double blob(const glm::dvec3& voxel)
     return s > 0.0 ? s * s : 0.0;
 }
 
-// Colours and opacity without kinks that matter: 65 points of smooth functions.
-Points smoothTable(double opacity)
-{
-    Points points;
-    for (int i = 0; i <= 64; ++i) {
-        const double v = i / 64.0, s = v * v * (3.0 - 2.0 * v);
-        points.push_back({v, {s, 0.5 + 0.4 * std::sin(3.0 * v), 1.0 - 0.8 * s, opacity * s}});
-    }
-    return points;
-}
-
-// A transparent background with one opaque peak, 1/32 of the range wide.
-Points peakTable()
-{
-    const glm::dvec3 blue(0.2, 0.4, 0.9), gold(1.0, 0.8, 0.2);
-    return {{0.0, {blue, 0.0}},
-            {0.5, {blue, 0.0}},
-            {0.515625, {gold, 0.8}},
-            {0.53125, {blue, 0.0}},
-            {1.0, {blue, 0.0}}};
-}
-
 // By default of the 128^3 box, for whatever part of it has voxels.
 void setView(ChartScene& scene, bool perspective, int pixels,
              const osg::Vec3d& center = {63.5, 63.5, 63.5}, double distance = 330.0)
@@ -96,7 +75,7 @@ ChartScene synthetic(ChartVolume volume, bool perspective = true, int pixels = 5
     return scene;
 }
 
-ChartVolume marschnerLobbVolume(VoxelType type, const Points& table)
+ChartVolume marschnerLobbVolume(VoxelType type, const TablePoints& table)
 {
     return makeVolume(
         glm::ivec3(SIZE), glm::dvec3(0.0), type,
@@ -119,7 +98,7 @@ ChartScene large()
 ChartScene overlapping()
 {
     ChartScene scene = synthetic(marschnerLobbVolume(VoxelType::FLOAT32, smoothTable(0.04)));
-    Points table = smoothTable(0.04);
+    TablePoints table = smoothTable(0.04);
     for (auto& point : table)
         point.color = {point.color.b, point.color.r, point.color.g, point.color.a};
     const glm::dvec3 origin(28.5, -20.25, 16.75);
@@ -179,7 +158,7 @@ struct Entry
 std::vector<Entry> entries()
 {
     const VoxelType f = VoxelType::FLOAT32;
-    const auto field = [](VoxelType type, const Points& table, bool perspective = true,
+    const auto field = [](VoxelType type, const TablePoints& table, bool perspective = true,
                           int pixels = 512) {
         return [=] { return synthetic(marschnerLobbVolume(type, table), perspective, pixels); };
     };
@@ -189,7 +168,7 @@ std::vector<Entry> entries()
                                         blob, smoothTable(0.3)));
         };
     };
-    const Points smooth = smoothTable(0.06);
+    const TablePoints smooth = smoothTable(0.06);
     return {
         {"smooth", "smooth table, float voxels fill the box", field(f, smooth)},
         {"smooth-8bit", "the same, 8-bit voxels", field(VoxelType::UINT8, smooth)},

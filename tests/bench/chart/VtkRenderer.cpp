@@ -1,7 +1,8 @@
 #include "VtkRenderer.h"
 
+#include "../support/VtkWindow.h"
+
 #include <vtkActor.h>
-#include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkFixedPointVolumeRayCastMapper.h>
@@ -10,30 +11,15 @@
 #include <vtkLight.h>
 #include <vtkMultiVolume.h>
 #include <vtkNew.h>
-#include <vtkOpenGLFramebufferObject.h>
-#include <vtkOpenGLRenderWindow.h>
-#include <vtkOpenGLState.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
-#include <vtkRenderer.h>
-#include <vtkTextureObject.h>
 #include <vtkVolume.h>
 #include <vtkVolumeProperty.h>
 
-#include <vtkAutoInit.h>
-VTK_MODULE_INIT(vtkRenderingOpenGL2)
-VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2)
-
-#include <GL/gl.h>
-#include <GL/glx.h>
-#undef Status // of X11
-
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 
 namespace osgVolumizer {
 namespace bench {
@@ -87,40 +73,19 @@ class VtkRenderer : public Renderer
 {
 public:
     explicit VtkRenderer(bool gpu) : _gpu(gpu) {}
-    ~VtkRenderer() override
-    {
-        if (!_window) return;
-        _window->MakeCurrent();
-        _window->Finalize();
-    }
 
     std::string name() const override { return _gpu ? "VTK GPU" : "VTK CPU"; }
     Status open(const ChartScene& scene) override;
     Status setStep(double stepVoxel) override;
-    void frame() override
-    {
-        _window->Render();
-        glFinish();
-        release();
-    }
-    support::FloatImage picture() override;
+    void frame() override { _window.frame(); }
+    support::FloatImage picture() override { return _window.picture(); }
 
 private:
     void makeVolumes(const ChartScene& scene);
     void addSurface(const ChartSurface& surface);
-    void makeView(const ChartScene& scene);
-    void makeFloatTarget();
-    // The other renderers make contexts of EGL current in this thread.
-    static void release()
-    {
-        if (Display* display = glXGetCurrentDisplay()) glXMakeCurrent(display, None, nullptr);
-    }
 
     bool _gpu;
-    ChartScene _scene;
-    vtkSmartPointer<vtkRenderWindow> _window;
-    vtkNew<vtkRenderer> _renderer;
-    vtkNew<vtkTextureObject> _texture;
+    VtkWindow _window;
     vtkSmartPointer<vtkGPUVolumeRayCastMapper> _gpuMapper;
     vtkSmartPointer<vtkFixedPointVolumeRayCastMapper> _cpuMapper;
 };
@@ -151,7 +116,7 @@ void VtkRenderer::makeVolumes(const ChartScene& scene)
         if (count > 1) shown = several;
         shown->SetMapper(_gpuMapper);
     }
-    _renderer->AddVolume(shown);
+    _window.renderer().AddVolume(shown);
 }
 
 void VtkRenderer::addSurface(const ChartSurface& surface)
@@ -174,72 +139,31 @@ void VtkRenderer::addSurface(const ChartSurface& surface)
     actor->GetProperty()->SetLighting(false);
     actor->GetProperty()->SetColor(surface.color.r, surface.color.g, surface.color.b);
     actor->GetProperty()->SetOpacity(surface.color.a);
-    _renderer->AddActor(actor);
-}
-
-void VtkRenderer::makeView(const ChartScene& scene)
-{
-    osg::Vec3d eye, center, up;
-    scene.view.view.getLookAt(eye, center, up, 330.0);
-    vtkCamera* camera = _renderer->GetActiveCamera();
-    camera->SetPosition(eye.x(), eye.y(), eye.z());
-    camera->SetFocalPoint(center.x(), center.y(), center.z());
-    camera->SetViewUp(up.x(), up.y(), up.z());
-    const osg::Matrixd& p = scene.view.projection;
-    if (p(3, 3) != 0.0) {
-        camera->ParallelProjectionOn();
-        camera->SetParallelScale(1.0 / p(1, 1)); // half the height
-    } else {
-        camera->SetViewAngle(2.0 * std::atan(1.0 / p(1, 1)) * 180.0 / M_PI);
-    }
-    _renderer->ResetCameraClippingRange();
-    _renderer->SetBackground(0.0, 0.0, 0.0);
-    _renderer->SetBackgroundAlpha(0.0);
-    if (!scene.shaded) return;
-    vtkNew<vtkLight> light;
-    light->SetLightTypeToHeadlight();
-    _renderer->AddLight(light);
-}
-
-// The window draws to a framebuffer of 8 bits, and copies that to the screen: here its colours
-// get 32.
-void VtkRenderer::makeFloatTarget()
-{
-    _window->Render(); // makes the framebuffer
-    auto* window = static_cast<vtkOpenGLRenderWindow*>(_window.Get());
-    _texture->SetContext(window);
-    _texture->Create2D(unsigned(_scene.view.width), unsigned(_scene.view.height), 4, VTK_FLOAT,
-                       false);
-    window->GetState()->PushFramebufferBindings();
-    window->GetRenderFramebuffer()->Bind();
-    window->GetRenderFramebuffer()->AddColorAttachment(0, _texture);
-    window->GetState()->PopFramebufferBindings();
+    _window.renderer().AddActor(actor);
 }
 
 Status VtkRenderer::open(const ChartScene& scene)
 {
-    _scene = scene;
-    if (!std::getenv("DISPLAY")) return Status(ErrorCode::NOT_SUPPORTED, "needs an X server");
     if (!_gpu && !scene.isOneVolume())
         return Status(ErrorCode::NOT_SUPPORTED, "draws one volume, and surfaces behind it");
-    _window = vtkSmartPointer<vtkRenderWindow>::New();
-    _window->SetOffScreenRendering(1);
-    _window->SetMultiSamples(0);
-    _window->SetSize(scene.view.width, scene.view.height);
-    _window->AddRenderer(_renderer);
-    _window->SetAlphaBitPlanes(1); // for peeling
+    const Status status = _window.open(scene.view.width, scene.view.height);
+    if (!status.ok()) return status;
     makeVolumes(scene);
     for (const ChartSurface& surface : scene.surfaces)
         addSurface(surface);
+    vtkRenderer& renderer = _window.renderer();
     if (!scene.surfaces.empty()) {
-        _renderer->SetUseDepthPeeling(1);
-        _renderer->SetUseDepthPeelingForVolumes(1);
-        _renderer->SetMaximumNumberOfPeels(20);
-        _renderer->SetOcclusionRatio(0.0);
+        renderer.SetUseDepthPeeling(1);
+        renderer.SetUseDepthPeelingForVolumes(1);
+        renderer.SetMaximumNumberOfPeels(20);
+        renderer.SetOcclusionRatio(0.0);
     }
-    makeView(scene);
-    makeFloatTarget();
-    release();
+    if (scene.shaded) {
+        vtkNew<vtkLight> light;
+        light->SetLightTypeToHeadlight();
+        renderer.AddLight(light);
+    }
+    _window.setView(scene.view);
     return {};
 }
 
@@ -251,17 +175,6 @@ Status VtkRenderer::setStep(double stepVoxel)
         _cpuMapper->SetSampleDistance(float(stepVoxel));
     if (_cpuMapper) _cpuMapper->SetInteractiveSampleDistance(float(stepVoxel));
     return {};
-}
-
-support::FloatImage VtkRenderer::picture()
-{
-    support::FloatImage image(_scene.view.width, _scene.view.height);
-    _window->MakeCurrent();
-    glBindTexture(GL_TEXTURE_2D, _texture->GetHandle());
-    glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, image.pixels.data());
-    glBindTexture(GL_TEXTURE_2D, 0);
-    release();
-    return image;
 }
 
 } // namespace

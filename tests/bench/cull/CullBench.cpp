@@ -4,7 +4,7 @@
 //
 //   cullbench [frames]
 
-#include "../Median.h"
+#include "../support/Median.h"
 #include "Volumes.h"
 
 #include <osgVolumizer/core/voxels/VoxelData.h>

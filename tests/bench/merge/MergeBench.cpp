@@ -5,8 +5,8 @@
 //
 //   mergebench [frames] [name]
 
-#include "../Median.h"
-#include "../ProcessTime.h"
+#include "../support/Median.h"
+#include "../support/ProcessTime.h"
 #include "MixedScene.h"
 
 #include <algorithm>

@@ -4,8 +4,8 @@
 //
 //   overlapbench [frames] [size of the picture]
 
-#include "../Median.h"
-#include "../ProcessTime.h"
+#include "../support/Median.h"
+#include "../support/ProcessTime.h"
 #include "MixedScene.h"
 
 #include <algorithm>
