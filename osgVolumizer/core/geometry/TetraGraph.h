@@ -46,6 +46,8 @@ struct OSGVOLUMIZER_CORE_EXPORT TetraGraph
     std::size_t flat = 0;             ///< without volume: passed through, and nothing of them seen
     std::size_t inverted = 0;         ///< of negative orientation, where that is not the rule
     std::size_t nonManifoldFaces = 0; ///< of more than two tetrahedra: as outer faces of each
+    /// Whether anything is left out, or drawn otherwise than may be meant.
+    bool isOdd() const { return repeatedVertices + twice + flat + nonManifoldFaces > 0; }
     /// A sentence on what is left out or not as it should be; empty where nothing is.
     std::string oddities() const;
 };

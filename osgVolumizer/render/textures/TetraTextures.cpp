@@ -90,6 +90,7 @@ std::shared_ptr<const TetraTextures> makeTetraTextures(const core::TetraSet& set
     result->gridMin = glm::vec3(graph.gridBox.min);
     result->gridScale = glm::vec3(glm::dvec3(graph.gridSize) / graph.gridBox.size());
     result->oddities = graph.oddities();
+    result->isOdd = graph.isOdd();
     result->graph = bufferTexture(graph.words, RED_INTEGER, GL_UNSIGNED_INT, R32UI);
     result->numbers = std::make_shared<const std::vector<std::uint32_t>>(std::move(graph.numbers));
     const core::VertexArray& vertices = set.vertices;

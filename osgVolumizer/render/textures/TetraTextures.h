@@ -30,7 +30,8 @@ struct TetraTextures
     glm::ivec3 gridSize{1};
     glm::vec3 gridMin{0.0f}, gridScale{1.0f};                  ///< frame; cells per frame unit
     std::shared_ptr<const std::vector<std::uint32_t>> numbers; ///< of tetrahedra, in the set
-    std::string oddities;                                      ///< see core::TetraGraph
+    bool isOdd = false;
+    std::string oddities; ///< see core::TetraGraph
 
     std::vector<osg::TextureBuffer*> all() const;
     std::size_t bytes() const; ///< on the card

@@ -39,7 +39,7 @@ std::shared_ptr<const TetraTextures> GeometryCache::tetrahedra(const VolumeGeome
     auto textures = known ? *known : nullptr;
     if (!textures) {
         textures = makeTetraTextures(prepared->tetras, !prepared->voxelFrame);
-        if (!textures->oddities.empty())
+        if (textures->isOdd)
             reportOnce({ErrorCode::VALUE_INVALID,
                         "VolumeGeometry \"" + geometry.getName() + "\": " + textures->oddities});
     }
