@@ -4,6 +4,7 @@
 #include "core/NumberRule.h"
 #include "core/Text.h"
 #include "core/geometry/Solids.h"
+#include "private/FieldShaders.h"
 #include "private/Flattening.h"
 #include "private/Picker.h"
 #include "private/Renderer.h"
@@ -25,6 +26,7 @@ struct VolumeGeometry::Private
 {
     mutable std::mutex mutex;
     TetraSetPtr tetraSet = std::make_shared<const core::TetraSet>();
+    std::string fieldShader;
     ScalarsPtr scalars;
     ScalarBinding binding = PER_VERTEX;
     osg::Vec2d range{0.0, 1.0};
@@ -83,6 +85,7 @@ VolumeGeometry::VolumeGeometry(const VolumeGeometry& o, const osg::CopyOp& op)
     _private->tetraSet = o.getTetraSet();
     _private->slackAngle = o.getSlackAngle();
     std::lock_guard<std::mutex> lock(o._private->mutex);
+    _private->fieldShader = o._private->fieldShader;
     _private->scalars = o._private->scalars;
     _private->binding = o._private->binding;
     _private->range = o._private->range;
@@ -150,6 +153,25 @@ VolumeGeometry::TetraSetPtr VolumeGeometry::getTetraSet() const
 unsigned VolumeGeometry::getModifiedCount() const
 {
     return _private->modifiedCount;
+}
+
+ReportedStatus VolumeGeometry::setFieldShader(const std::string& glsl)
+{
+    if (fieldShaderNumber(glsl) < 0)
+        return reported({ErrorCode::TOO_LARGE, "VolumeGeometry \"" + getName() +
+                                                   "\": there are 1023 field shaders already"});
+    {
+        std::lock_guard<std::mutex> lock(_private->mutex);
+        _private->fieldShader = glsl;
+    }
+    ++_private->modifiedCount;
+    return {};
+}
+
+std::string VolumeGeometry::getFieldShader() const
+{
+    std::lock_guard<std::mutex> lock(_private->mutex);
+    return _private->fieldShader;
 }
 
 ReportedStatus VolumeGeometry::setScalars(std::vector<float> scalars, ScalarBinding binding)

@@ -9,6 +9,7 @@
 #include <osg/Vec2d>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace osgVolumizer {
@@ -56,6 +57,15 @@ public:
     TetraSetPtr getTetraSet() const;
     /// Grows with every setTetraSet(). Thread safe.
     unsigned getModifiedCount() const;
+
+    /// GLSL that makes what is shown of the user values of vertices (core::VertexFormat::userSize):
+    /// it defines `vec4 shadeFields(vec4 color, float fields[FIELDS])`, which is called for every
+    /// sample with the values there, linear in each tetrahedron, and with the colour that else is
+    /// shown: straight linear RGB, and the opacity of a layer one opacity unit thick. Declarations
+    /// begin their lines. Empty (default): user values are not looked at. Composited volumes only;
+    /// TOO_LARGE for more than 1023 different ones in a process, and the old one stays.
+    ReportedStatus setFieldShader(const std::string& glsl);
+    std::string getFieldShader() const;
 
     /// What scalars belong to.
     enum ScalarBinding

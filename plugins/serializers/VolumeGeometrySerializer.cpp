@@ -89,6 +89,11 @@ Status applyTetraSet(Record& record, const osgDB::Options*, VolumeGeometry& geom
     if (status.ok() && record.has("SlackAngle")) status = record.get("SlackAngle", 1, slackAngle);
     if (status.ok()) status = geometry.setSlackAngle(slackAngle[0]);
     if (status.ok()) status = geometry.setTetraSet(std::move(set));
+    if (status.ok() && record.has("FieldShader")) {
+        std::string shader;
+        status = record.get("FieldShader", shader);
+        if (status.ok()) status = geometry.setFieldShader(shader);
+    }
     return status.ok() ? applyScalars(record, geometry) : status;
 }
 
@@ -104,6 +109,8 @@ void fillTetraSet(const VolumeGeometry& geometry, Record& record, const osgDB::O
     record.add("Tetrahedra", Field::Indices(set->indices), 4);
     if (geometry.getSlackAngle() != 0.0)
         record.add("SlackAngle", Field::Doubles{geometry.getSlackAngle()});
+    if (!geometry.getFieldShader().empty())
+        record.add("FieldShader", geometry.getFieldShader());
     fillScalars(geometry, record);
 }
 

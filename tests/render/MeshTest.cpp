@@ -337,4 +337,40 @@ TEST_F(MeshTest, FacesOfManyTetrahedraAndFlatOnes)
         EXPECT_EQ(reports.count(what), 1) << what;
 }
 
+TEST_F(MeshTest, UserValuesReachAShader)
+{
+    // Two fields, a pressure and a share, as colour and opacity: what colours of vertices show.
+    oracle::TetraMesh mesh = jittered(6);
+    for (const glm::dvec3& p : mesh.points)
+        mesh.colors.emplace_back(p.x, 1.0 - p.x, 0.25, 0.3 * p.y);
+    const TwinMesh twin = makeTwin(mesh, colorfulPoints(), 1.0);
+    core::TetraSet set = oracle::tetraSet(mesh);
+    const core::VertexArray places = set.vertices;
+    set.vertices = core::VertexArray(core::VertexFormat::user(0, 0, 2));
+    set.vertices.resize(mesh.points.size());
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+        set.vertices.setPosition(i, places.position(i));
+        double* user = set.vertices.record(i) + set.vertices.format().userOffset();
+        user[0] = mesh.points[i].x;
+        user[1] = 100.0 * mesh.points[i].y;
+    }
+    ASSERT_TRUE(twin.geometry->setTetraSet(std::move(set)).ok());
+    const auto options = viewFrom(OBLIQUE, twin.node->getBound());
+    const support::FloatImage without = support::renderScene(twin.node, options);
+    EXPECT_EQ(support::coveredPixels(without).count(), 0u);
+    ASSERT_TRUE(twin.geometry
+                    ->setFieldShader("vec4 shadeFields(vec4 color, float fields[FIELDS])\n{\n"
+                                     "    return vec4(fields[0], 1.0 - fields[0], 0.25, "
+                                     "0.003 * fields[1]);\n}\n")
+                    .ok());
+    std::vector<double> periods, errors;
+    for (const double period : {1.0, 0.5, 0.25}) {
+        twin.node->setSamplingPeriod(osg::Vec3d(period, period, period) * 0.1);
+        periods.push_back(period);
+        errors.push_back(difference(twin, options, "fields").rmse);
+    }
+    EXPECT_LT(errors[0], 1e-4);
+    EXPECT_LT(errors[2], errors[0]);
+}
+
 } // namespace MeshTest

@@ -118,7 +118,7 @@ std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
     volume->prepared = renderData<GeometryCache>(geometry)->get(geometry, voxels);
     if (!volume->prepared) return nullptr;
     if (volume->prepared->scalars) voxels = nullptr;
-    if (!voxels && !volume->prepared->scalars &&
+    if (!voxels && !volume->prepared->scalars && volume->prepared->fieldShader == 0 &&
         volume->prepared->tetras.vertices.format().colorSize == 0)
         return nullptr;
     volume->sampling = appearance.getSamplingParameters();

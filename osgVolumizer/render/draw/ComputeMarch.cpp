@@ -42,9 +42,9 @@ osg::Program& programOf(osg::State& state, ContextResources& resources, const Vo
                         GLenum format)
 {
     const std::vector<ProgramFeatures> members = membersOf(part);
-    std::vector<std::uint64_t> key{format, part.features.key()};
+    std::vector<std::uint64_t> key{format, part.features.key(), part.features.fieldKey()};
     for (const ProgramFeatures& member : members)
-        key.push_back(member.key());
+        key.insert(key.end(), {member.key(), member.fieldKey()});
     osg::ref_ptr<osg::Program>& program = resources.part<ComputePrograms>().programs[key];
     if (!program)
         program = makeComputeProgram(computeHeader(state) + "#define TARGET_FORMAT " +

@@ -2,6 +2,8 @@
 
 #include "../context/ShaderSource.h"
 #include "Paint.h"
+
+#include "../../private/FieldShaders.h"
 #include "RayFunctions.h"
 
 #include <algorithm>
@@ -76,6 +78,7 @@ std::string volumeSource(const ProgramFeatures& volume)
 {
     std::string code;
     if (volume.tetrahedra) code += shaderSource("tetrahedra.glsl") + shaderSource("linear.glsl");
+    if (volume.fieldCount > 0) code += fieldShader(volume.fieldShader) + "\n";
     for (const char* file :
          {"filtering.glsl", "voxels.glsl", "transfer.glsl", "ray.glsl", "shading.glsl", "fog.glsl",
           "cut.glsl", "skipping.glsl", "region.glsl"})

@@ -85,6 +85,7 @@ std::string ProgramFeatures::defines() const
         define(this->*flag.member, flag.define);
     define(exact || nearest || cubic || before, "FETCH");
     define(isExact(), "EXACT_CELLS");
+    define(fieldCount > 0, "FIELDS " + std::to_string(fieldCount));
     define(paintCount > 0, "PAINTED");
     define(slotCount > 0, "SLOTS " + std::to_string(slotCount));
     define(filterBits > 0, "FILTER_BITS " + std::to_string(filterBits));

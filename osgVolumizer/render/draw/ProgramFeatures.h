@@ -54,20 +54,29 @@ struct ProgramFeatures : ProgramFlags
     int paintCount = 0; ///< bricks of volumes that paint this one; no more than 4
     int planeCount = 0; ///< half-spaces that cut it, besides the clip box
     int filterBits = 0; ///< see ContextLimits; less than 16
+    /// User values of vertices that a field shader of that number makes something of; tetrahedra
+    /// only. 0: none.
+    int fieldCount = 0, fieldShader = 0;
 
     /// Whether surfaces are sorted before the volume, whose shader reads them.
     bool needsSortedSurfaces() const { return ranked || slotCount > 0; }
 
     /// Whether light is integrated in closed form: along rays, colour and opacity are linear.
-    bool isExact() const { return tetrahedra && !voxels && integratesLight(); }
+    bool isExact() const { return tetrahedra && !voxels && fieldCount == 0 && integratesLight(); }
     bool integratesLight() const;
 
     /// Whether the rays' values are gathered in a target of their own, and drawn at once, at one
     /// depth.
     bool gathers() const;
 
-    /// Different for different features.
+    /// Different for different features, but for those of fields.
     std::uint64_t key() const;
+    /// Different for different field shaders and numbers of fields.
+    std::uint64_t fieldKey() const
+    {
+        return static_cast<std::uint64_t>(fieldShader) << 8 |
+               static_cast<std::uint64_t>(fieldCount);
+    }
 
     /// The lines that define, for GLSL, all that is on.
     std::string defines() const;

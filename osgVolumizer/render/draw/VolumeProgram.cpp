@@ -123,9 +123,9 @@ osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features)
 osg::ref_ptr<osg::StateSet> volumeStateSet(const ProgramFeatures& features,
                                            const std::vector<ProgramFeatures>& members)
 {
-    std::vector<std::uint64_t> key{features.key()};
+    std::vector<std::uint64_t> key{features.key(), features.fieldKey()};
     for (const ProgramFeatures& member : members)
-        key.push_back(member.key());
+        key.insert(key.end(), {member.key(), member.fieldKey()});
     return sharedStateSet(key, [&]() { return makeStateSet(features, members); });
 }
 

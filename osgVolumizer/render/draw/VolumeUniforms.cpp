@@ -163,7 +163,8 @@ bool setTetrahedra(osg::State& state, const Uniforms& uniforms, const VolumeLook
     const std::pair<const char*, osg::TextureBuffer*> buffers[] = {
         {"tetraGraph", t.graph.get()},
         {"tetraPositions", t.positions.get()},
-        {"tetraScalars", t.scalars.get()},
+        {"tetraScalars", look.features.scalars ? t.scalars.get() : nullptr},
+        {"tetraFields", look.features.fieldCount > 0 ? t.fields.get() : nullptr},
         {"tetraPlaces", look.features.places ? t.places.get() : nullptr},
         {"tetraColors", look.features.vertexColors ? t.colors.get() : nullptr}};
     for (const auto& buffer : buffers) {

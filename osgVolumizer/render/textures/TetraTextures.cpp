@@ -58,7 +58,7 @@ glm::dvec4 colorOf(const core::VertexArray& vertices, std::size_t i)
 std::vector<osg::TextureBuffer*> TetraTextures::all() const
 {
     std::vector<osg::TextureBuffer*> result;
-    for (const auto& texture : {graph, positions, places, colors, scalars})
+    for (const auto& texture : {graph, positions, places, colors, fields, scalars})
         if (texture) result.push_back(texture.get());
     return result;
 }
@@ -102,6 +102,14 @@ std::shared_ptr<const TetraTextures> makeTetraTextures(const core::TetraSet& set
     if (vertices.format().colorSize > 0)
         result->colors =
             vertexTexture(vertices, [&](std::size_t i) { return colorOf(vertices, i); });
+    if (vertices.format().userSize > 0) {
+        std::vector<float> values;
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            const double* user = vertices.record(i) + vertices.format().userOffset();
+            values.insert(values.end(), user, user + vertices.format().userSize);
+        }
+        result->fields = bufferTexture(values, GL_RED, GL_FLOAT, GL_R32F);
+    }
     return result;
 }
 

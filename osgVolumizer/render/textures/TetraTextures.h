@@ -22,6 +22,7 @@ struct TetraTextures
     osg::ref_ptr<osg::TextureBuffer> positions; ///< frame
     osg::ref_ptr<osg::TextureBuffer> places;    ///< voxel coordinates of vertices; or null
     osg::ref_ptr<osg::TextureBuffer> colors;    ///< straight RGBA of vertices; or null
+    osg::ref_ptr<osg::TextureBuffer> fields;    ///< user values, one texel each; or null
     /// Fractions of the range of scalars, of vertices or tetrahedra; 3e38: none. Or null.
     osg::ref_ptr<osg::TextureBuffer> scalars;
     unsigned scalarCount = 0; ///< of the geometry, that the scalars are of

@@ -3,6 +3,7 @@
 #include "../../Outlines.h"
 #include "../../VolumeGeometry.h"
 #include "../../Voxels.h"
+#include "../../private/FieldShaders.h"
 #include "SliceCache.h"
 
 #include "../context/ReportOnce.h"
@@ -26,7 +27,10 @@ std::shared_ptr<const PreparedGeometry> GeometryCache::get(const VolumeGeometry&
     std::lock_guard<std::mutex> lock(_mutex);
     if (const auto* known = _prepared.find(key)) return *known;
     const auto set = geometry.getTetraSet();
-    return _prepared.add(key, set->empty() ? nullptr : prepareGeometry(*set, voxels, key.scalars));
+    if (set->empty()) return _prepared.add(key, nullptr);
+    return _prepared.add(
+        key, prepareGeometry(*set, voxels, key.scalars,
+                             std::max(fieldShaderNumber(geometry.getFieldShader()), 0)));
 }
 
 std::shared_ptr<const TetraTextures> GeometryCache::tetrahedra(const VolumeGeometry& geometry,

@@ -104,6 +104,7 @@ void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& pre
                  ProgramFeatures& features, Reasons& reasons)
 {
     const Voxels* voxels = voxelsIn(appearance, prepared);
+    features.rayFunction = usedRayFunction(appearance, prepared, reasons);
     features.slab = usesSlabs(appearance, prepared);
     features.voxels = voxels != nullptr;
     features.rgba = voxels && voxels->getComponents() == 4;
@@ -112,10 +113,13 @@ void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& pre
     features.tetrahedra = usesTetrahedra(appearance, prepared);
     features.scalars = prepared.scalars;
     features.places = features.tetrahedra && voxels && !prepared.voxelFrame;
-    features.wholeRuns =
-        features.tetrahedra && voxels && prepared.voxelFrame && !features.vertexColors;
+    if (features.tetrahedra && prepared.fieldShader > 0 && features.integratesLight()) {
+        features.fieldCount = prepared.tetras.vertices.format().userSize;
+        features.fieldShader = prepared.fieldShader;
+    }
+    features.wholeRuns = features.tetrahedra && voxels && prepared.voxelFrame &&
+                         !features.vertexColors && features.fieldCount == 0;
     features.opaqueDepth = features.slab;
-    features.rayFunction = usedRayFunction(appearance, prepared, reasons);
     features.shading = usesShading(appearance, prepared, features.rayFunction, reasons);
     explainSampling(appearance, prepared, reasons);
     if (voxels && appearance.getCombineRule() != VolumeAppearance::PAINT)

@@ -128,10 +128,11 @@ void splitRegion(PreparedGeometry& prepared, const core::Box3d& voxelExtent)
 
 } // namespace
 
-std::shared_ptr<const PreparedGeometry> prepareGeometry(const core::TetraSet& set,
-                                                        const Voxels* voxels, bool scalars)
+std::shared_ptr<const PreparedGeometry>
+prepareGeometry(const core::TetraSet& set, const Voxels* voxels, bool scalars, int fieldShader)
 {
     auto result = std::make_shared<PreparedGeometry>();
+    if (set.vertices.format().userSize > 0) result->fieldShader = fieldShader;
     if (scalars) voxels = nullptr;
     result->scalars = scalars;
     const bool explicitCoordinates = !scalars && set.vertices.format().voxelCoordinateSize == 3;

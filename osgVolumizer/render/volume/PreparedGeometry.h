@@ -25,10 +25,11 @@ struct PreparedGeometry
     core::TetraSet tetras;
     glm::dmat4 frameToObject{1.0};
     bool voxelFrame = true;
-    bool scalars = false;                     ///< fill the tetrahedra in place of voxels
-    double unitsPerFrame = 1.0;               ///< object units per frame unit, where that is one
-    double meanEdge = 1.0;                    ///< frame; of a tetrahedron of mean volume, regular
-    core::Box3d bounds;                       ///< of the tetrahedra, in the frame
+    bool scalars = false;       ///< fill the tetrahedra in place of voxels
+    int fieldShader = 0;        ///< its number, where vertices have user values; else 0
+    double unitsPerFrame = 1.0; ///< object units per frame unit, where that is one
+    double meanEdge = 1.0;      ///< frame; of a tetrahedron of mean volume, regular
+    core::Box3d bounds;         ///< of the tetrahedra, in the frame
     std::optional<core::ConvexRegion> region; ///< in the frame, where the tetrahedra are convex
     /// What of the region its axis-aligned half-spaces leave (and the voxels), and the half-spaces
     /// that cut this further; `bounds` and none where there is no region.
@@ -38,7 +39,8 @@ struct PreparedGeometry
 
 /// The tetra set of a geometry, seen with voxels or none (null), or with scalars in their place.
 std::shared_ptr<const PreparedGeometry> prepareGeometry(const core::TetraSet& set,
-                                                        const Voxels* voxels, bool scalars = false);
+                                                        const Voxels* voxels, bool scalars = false,
+                                                        int fieldShader = 0);
 
 } // namespace render
 } // namespace osgVolumizer

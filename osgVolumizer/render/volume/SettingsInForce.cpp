@@ -131,7 +131,8 @@ bool usesSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepa
 bool usesTetrahedra(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
 {
     const bool convex = appearance.getVoxels() && prepared.voxelFrame && prepared.region &&
-                        prepared.tetras.vertices.format().colorSize == 0;
+                        prepared.tetras.vertices.format().colorSize == 0 &&
+                        prepared.fieldShader == 0;
     return usesSlabs(appearance, prepared) && !convex;
 }
 

@@ -13,6 +13,9 @@ uniform samplerBuffer tetraPlaces; // voxel coordinates
 #ifdef VERTEX_COLORS
 uniform samplerBuffer tetraColors; // straight RGBA
 #endif
+#ifdef FIELDS
+uniform samplerBuffer tetraFields; // of one vertex after another
+#endif
 uniform int tetraFacesBegin, tetraGridBegin; // words
 uniform int mostTetrahedra;                  // on a ray
 uniform ivec3 tetraGridSize;
@@ -33,6 +36,9 @@ struct Known
 #endif
 #ifdef VERTEX_COLORS
     vec4 color;
+#endif
+#ifdef FIELDS
+    float fields[FIELDS];
 #endif
 };
 
@@ -63,6 +69,9 @@ Corner cornerOf(uint vertex)
 #ifdef VERTEX_COLORS
     c.known.color = texelFetch(tetraColors, int(vertex));
 #endif
+#ifdef FIELDS
+    for (int i = 0; i < FIELDS; ++i) c.known.fields[i] = texelFetch(tetraFields, int(vertex) * FIELDS + i).r;
+#endif
     return c;
 }
 
@@ -84,6 +93,9 @@ Known inFace(Corner a, Corner b, Corner c)
 #ifdef VERTEX_COLORS
     MEET(color);
 #endif
+#ifdef FIELDS
+    for (int i = 0; i < FIELDS; ++i) MEET(fields[i]);
+#endif
     return k;
 }
 
@@ -102,11 +114,14 @@ float partBegin;   // where the part begins, which may be later than where the t
 mat3 placesToFrame; // gradient by place -> gradient in the frame
 #endif
 
-#ifdef VERTEX_COLORS
-vec4 colorOnRay(float t)
+// How far a depth is through the tetrahedron.
+float shareOfPart(float t)
 {
-    return mix(entered.color, left.color, clamp((t - entered.depth) / max(left.depth - entered.depth, 1e-30), 0.0, 1.0));
+    return clamp((t - entered.depth) / max(left.depth - entered.depth, 1e-30), 0.0, 1.0);
 }
+
+#ifdef VERTEX_COLORS
+vec4 colorOnRay(float t) { return mix(entered.color, left.color, shareOfPart(t)); }
 #endif
 
 void beginWalk(vec3 origin, vec3 direction)

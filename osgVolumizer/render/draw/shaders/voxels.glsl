@@ -114,7 +114,7 @@ TEXEL voxelAt(vec3 place)
 }
 #endif
 
-#ifdef SCALARS
+#if defined(TETRAHEDRA) && !defined(VOXELS)
 // Scalars of tetrahedra are places of their own.
 #define TEXEL float
 #define VOXEL_LENGTH 1.0
@@ -122,7 +122,7 @@ vec3 placeOf(vec3 scalar) { return scalar; }
 float voxelAt(vec3 place) { return place.x; }
 #endif
 
-#if defined(VOXELS) || defined(SCALARS)
+#if defined(VOXELS) || defined(SCALARS) || defined(TETRAHEDRA)
 // The ray as places: that of the frame, which is the voxel frame, or that of the tetrahedron at hand.
 #if defined(PLACES) || defined(SCALARS)
 vec3 rayVoxelOrigin, rayVoxelRate;

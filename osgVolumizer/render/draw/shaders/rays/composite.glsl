@@ -4,12 +4,34 @@
 #define JOIN_RAY(front, behind) (front + (1.0 - front.a) * behind)
 #define RAY_DONE(light) (light.a >= 1.0 - OPAQUE_ENOUGH)
 
+#ifdef TETRAHEDRA
+// What vertices make of a colour and extinction.
+vec4 ofVertices(vec4 c, float t)
+{
+#ifdef VERTEX_COLORS
+#if defined(VOXELS) || defined(SCALARS)
+    c *= colorOnRay(t);
+#else
+    c = colorOnRay(t);
+    c.a = extinctionOf(c.a);
+#endif
+#endif
+#ifdef FIELDS
+    float fields[FIELDS];
+    for (int i = 0; i < FIELDS; ++i) fields[i] = mix(entered.fields[i], left.fields[i], shareOfPart(t));
+    c = shadeFields(vec4(c.rgb, 1.0 - exp2(-c.a)), fields);
+    c.a = extinctionOf(c.a);
+#endif
+    return c;
+}
+#endif
+
 #if defined(MEMBER) && defined(TETRAHEDRA)
 // Adds to a step about t: extinction times colour, and extinction, per unit of depth.
 void addLight(float t, float dt, inout vec4 sum)
 {
     if (!hasPart || t < partBegin || t >= left.depth || t < segment.x || t >= segment.y) return;
-    vec3 place = vec3(0.0);
+    vec3 place;
 #if defined(PLACES) || defined(SCALARS)
     takeVoxelRay();
 #endif
@@ -17,16 +39,8 @@ void addLight(float t, float dt, inout vec4 sum)
     vec3 voxel = voxelOnRay(memberOrigin, memberDirection, t);
     if (any(lessThan(voxel, clipMin)) || any(greaterThan(voxel, clipMax))) return;
 #endif
-#if defined(VOXELS) || defined(SCALARS)
     place = placeOnRay(memberOrigin, memberDirection, t);
-    vec4 c = classify(place);
-#ifdef VERTEX_COLORS
-    c *= colorOnRay(t);
-#endif
-#else
-    vec4 c = colorOnRay(t);
-    c.a = extinctionOf(c.a);
-#endif
+    vec4 c = ofVertices(classify(place), t);
     c.a *= keptAbout(memberOrigin, memberDirection, t, dt);
     addClassified(c, place, t, sum);
 }
@@ -84,8 +98,8 @@ void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float
     vec4 nextIntegral = tableIntegral(nextEntry);
     vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
     c.a *= keptUntil(cutPoint(origin, direction, t));
-#ifdef VERTEX_COLORS
-    c *= colorOnRay(t - 0.5 * depth);
+#ifdef TETRAHEDRA
+    c = ofVertices(c, t - 0.5 * depth);
 #endif
 #ifdef SHADING
     c = lit(c, place - 0.5 * depth * VOXEL_RATE(direction), t - 0.5 * depth);
@@ -173,8 +187,8 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     if (steps > 0) do {
         vec4 c = classify(place);
         c.a *= keptUntil(cutPoint(origin, direction, t + 0.5 * dt));
-#ifdef VERTEX_COLORS
-        c *= colorOnRay(t);
+#ifdef TETRAHEDRA
+        c = ofVertices(c, t);
 #endif
 #ifdef SHADING
         c = lit(c, place, t);
