@@ -48,6 +48,7 @@ PickHit hitOf(const picking::VolumeView& view, picking::ValueField* field,
     hit.normal = toOsg(view.normalAt(field, segment, seen.span, seen.parameter));
     hit.tetrahedron = seen.span.inTetrahedron ? seen.span.tetrahedron
                                               : view.region->tetrahedronAt(segment, seen.parameter);
+    if (view.look.scalars) hit.value = seen.span.scalarAt(seen.parameter);
     if (!field) return hit;
     hit.voxel = toOsg(seen.span.voxelAt(seen.parameter));
     const picking::GridLine line(seen.span, field->grid());

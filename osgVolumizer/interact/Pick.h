@@ -63,13 +63,13 @@ struct PickHit
     osg::Vec3d point;         ///< object frame
     osg::Vec3d normal;        ///< object frame, length 1, towards the start
     osg::Vec3d voxel;         ///< voxel frame
-    double value = 0.0;       ///< of the data there, interpolated; of RGBA voxels, alpha
+    double value = 0.0;       ///< of the data or scalars there, interpolated; of RGBA voxels, alpha
     int level = 0;            ///< of paged voxels, that it was found in; 0 is the finest
     unsigned tetrahedron = 0; ///< of the geometry's tetra set
 };
 
 /// Where a segment (object frame) meets what is seen of a geometry with an appearance, which need
-/// not be above it; nothing where it does not, or there are no voxels. VALUE_INVALID for a segment
+/// not be above it; nothing where it does not. VALUE_INVALID for a segment
 /// without length or that is not finite, and for an opacity outside [0, 1).
 OSGVOLUMIZER_EXPORT Result<std::optional<PickHit>>
 pickVolume(const VolumeGeometry& geometry, const VolumeAppearance& appearance,
