@@ -20,9 +20,9 @@ class VolumeGeometry;
 class OSGVOLUMIZER_EXPORT VolumeAppearance : public osg::Group
 {
 public:
-    /// Slabs: exact segments, second order. Slices: one polygon per sampling surface, first
-    /// order. AUTOMATIC takes slabs wherever the geometry is convex and neither sampling mode nor
-    /// space asks for slices.
+    /// Slabs: exact segments of rays, second order. Slices: one polygon per sampling surface, first
+    /// order. AUTOMATIC takes slabs wherever neither sampling mode nor space asks for slices, but
+    /// not of deformed voxels that do not fit into one texture.
     enum Technique
     {
         AUTOMATIC,

@@ -54,7 +54,7 @@ TEST(MeshPick, FindsWhereTheLightIsHalfGone)
     const oracle::MeshOracle truth(picked.mesh, oracle::Table(picked.points), 0.2);
     RandomLines lines(glm::dvec3(-0.2), glm::dvec3(1.2));
     int hits = 0;
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 600; ++i) {
         const Line line = lines.next();
         const auto found = pickLine(*picked.appearance, line);
         const glm::dvec3 start = line.at(0.0), direction = line.at(1.0) - start;
@@ -75,7 +75,7 @@ TEST(MeshPick, FindsValues)
     picked.appearance->setIsoValue(0.6);
     RandomLines lines(glm::dvec3(-0.2), glm::dvec3(1.2));
     int crossings = 0;
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 400; ++i) {
         const Line line = lines.next();
         picked.appearance->setRayFunction(A::ISOSURFACE);
         const auto iso = pickLine(*picked.appearance, line);

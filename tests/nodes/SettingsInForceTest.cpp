@@ -78,12 +78,23 @@ TEST_F(SettingsInForce, AutomaticSettingsAreResolved)
 TEST_F(SettingsInForce, TheGeometryDecidesAboutSlabs)
 {
     breakGeometry();
-    _appearance->setTechnique(A::SLABS);
     _appearance->setRayFunction(A::ISOSURFACE);
+    EXPECT_EQ(settings().technique, A::SLABS);
+    EXPECT_TRUE(hasReason("walk through the tetrahedra"));
+    EXPECT_EQ(settings().rayFunction, A::ISOSURFACE);
+    _appearance->setTechnique(A::SLICES);
     EXPECT_EQ(settings().technique, A::SLICES);
-    EXPECT_TRUE(hasReason("not convex"));
     EXPECT_EQ(settings().rayFunction, A::COMPOSITE);
     EXPECT_TRUE(hasReason("ISOSURFACE needs slabs"));
+}
+
+TEST_F(SettingsInForce, ScalarsAreNeverSlices)
+{
+    ASSERT_TRUE(
+        _geometry->setScalars(std::vector<float>(_geometry->getTetraSet()->vertices.size(), 1.0f)));
+    _appearance->setTechnique(A::SLICES);
+    EXPECT_EQ(settings().technique, A::SLABS);
+    EXPECT_TRUE(hasReason("scalars are not drawn as slices"));
 }
 
 TEST_F(SettingsInForce, TheVoxelsDecideAboutInterpolationAndRays)

@@ -65,8 +65,11 @@ void explainTechnique(const VolumeAppearance& appearance, const PreparedGeometry
         settings.reasons.push_back(why + "; the technique is slices");
     else if (asked == VolumeAppearance::SLICES)
         settings.reasons.emplace_back("scalars are not drawn as slices; the technique is slabs");
+    else if (usesTetrahedra(appearance, prepared))
+        settings.reasons.emplace_back("rays walk through the tetrahedra; the technique is slabs");
     else
-        settings.reasons.emplace_back("rays can be marched; the technique is slabs");
+        settings.reasons.emplace_back("the region is convex, in one voxel frame; the technique is "
+                                      "slabs");
 }
 
 void explainLookup(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
