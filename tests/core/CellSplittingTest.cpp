@@ -3,6 +3,8 @@
 #include "osgVolumizer/core/geometry/CellSplitting.h"
 #include "osgVolumizer/core/geometry/TetraMesh.h"
 
+#include "../support/OuterFaces.h"
+
 #include <glm/matrix.hpp>
 
 #include <gtest/gtest.h>
@@ -124,7 +126,7 @@ TEST(CellSplitting, NeighboursOfAnyKindAgreeUnderAnyNumbering)
         // Nothing open inside: the boundary is that of the cube with tetrahedra on it, so the six
         // sides of the cube are all there is below z = N.
         std::size_t below = 0;
-        for (const auto& face : boundaryFaces(set, adjacency)) {
+        for (const auto& face : osgVolumizer::support::outerFaces(set)) {
             glm::dvec3 low(1e9), high(-1e9);
             for (const TetraSet::Index i : face) {
                 low = glm::min(low, set.vertices.position(i));

@@ -2,6 +2,8 @@
 #include "TestGeometry.h"
 #include "osgVolumizer/core/geometry/TetraMesh.h"
 
+#include "../support/OuterFaces.h"
+
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -28,7 +30,7 @@ void expectMesh(const TetraSet& set)
     EXPECT_TRUE(adjacency.nonManifold.empty());
     glm::dvec3 sum(0.0);
     double signedVolume = 0.0;
-    for (const auto& f : boundaryFaces(set, adjacency)) {
+    for (const auto& f : osgVolumizer::support::outerFaces(set)) {
         const glm::dvec3 a = set.vertices.position(f[0]), b = set.vertices.position(f[1]),
                          c = set.vertices.position(f[2]);
         sum += glm::cross(b - a, c - a);
@@ -291,7 +293,7 @@ TEST(Cells, Strips)
         helix.push_back({std::cos(i * 2.3), std::sin(i * 2.3), 0.33 * i});
     TetraSet chain = strip(StripKind::TETRA_FACE, helix);
     EXPECT_EQ(chain.tetraCount(), 5u);
-    EXPECT_EQ(boundaryFaces(chain, findAdjacency(chain)).size(), 12u); // four inner faces
+    EXPECT_EQ(osgVolumizer::support::outerFaces(chain).size(), 12u); // four inner faces
     EXPECT_EQ(strip(StripKind::TETRA_EDGE, helix).tetraCount(), 3u);
     EXPECT_EQ(makeStrip(StripKind::HEXA, vertexArray(rings), counting(13)).status.code,
               ErrorCode::SIZE_MISMATCH);

@@ -1,6 +1,8 @@
 #include "osgVolumizer/core/geometry/TetraMesh.h"
 #include "TestGeometry.h"
 
+#include "../support/OuterFaces.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -41,14 +43,14 @@ TEST(TetraMesh, AdjacencyBoundaryAndOrientation)
     std::swap(grid.indices[8], grid.indices[9]);
     std::swap(grid.indices[100], grid.indices[101]);
     const Adjacency a = findAdjacency(grid);
-    EXPECT_EQ(boundaryFaces(grid, a).size(), 6u * 9u * 2u);
+    EXPECT_EQ(osgVolumizer::support::outerFaces(grid).size(), 6u * 9u * 2u);
     for (std::size_t t = 0; t < grid.tetraCount(); ++t)
         for (const std::int32_t n : a.neighbours[t]) {
             if (n == Adjacency::NONE) continue;
             const auto& back = a.neighbours[std::size_t(n)];
             EXPECT_NE(std::find(back.begin(), back.end(), std::int32_t(t)), back.end());
         }
-    for (const auto& f : boundaryFaces(grid, a)) {
+    for (const auto& f : osgVolumizer::support::outerFaces(grid)) {
         const glm::dvec3 p = grid.vertices.position(f[0]), q = grid.vertices.position(f[1]),
                          r = grid.vertices.position(f[2]);
         EXPECT_GT(glm::dot(glm::cross(q - p, r - p), p + q + r - glm::dvec3(4.5)), 0.0);

@@ -8,6 +8,7 @@
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/VolumeGeometry.h>
 #include <osgVolumizer/core/geometry/TetraMesh.h>
+#include <support/OuterFaces.h>
 
 #include <osgDB/ReadFile>
 
@@ -136,7 +137,7 @@ protected:
         std::size_t inside = 0;
         const core::Adjacency adjacency = core::findAdjacency(set);
         EXPECT_TRUE(adjacency.nonManifold.empty());
-        for (const auto& face : core::boundaryFaces(set, adjacency)) {
+        for (const auto& face : support::outerFaces(set)) {
             bool onBoundary = false;
             for (int axis = 0; axis < 3; ++axis)
                 for (const double plane : {0.0, 1.0})

@@ -80,24 +80,6 @@ Adjacency findAdjacency(const TetraSet& set)
     return r;
 }
 
-std::vector<std::array<TetraSet::Index, 3>> boundaryFaces(const TetraSet& set,
-                                                          const Adjacency& adjacency)
-{
-    std::vector<std::array<TetraSet::Index, 3>> r;
-    for (std::size_t t = 0; t < set.tetraCount(); ++t) {
-        const bool inverted = orientation(set, t) < 0.0;
-        for (std::size_t i = 0; i < 4; ++i) {
-            if (adjacency.neighbours[t][i] != Adjacency::NONE) continue;
-            std::array<TetraSet::Index, 3> f{};
-            for (std::size_t k = 0; k < 3; ++k)
-                f[k] = set.indices[4 * t + static_cast<std::size_t>(OPPOSITE[i][k])];
-            if (inverted) std::swap(f[1], f[2]);
-            r.push_back(f);
-        }
-    }
-    return r;
-}
-
 Result<glm::dmat4> positionToVoxel(const TetraSet& set, std::size_t t)
 {
     if (t >= set.tetraCount())

@@ -37,11 +37,6 @@ struct Adjacency
 /// Two tetrahedra are neighbours where they share three vertex indices.
 OSGVOLUMIZER_CORE_EXPORT Adjacency findAdjacency(const TetraSet& set);
 
-/// Vertex indices of the triangles with a tetrahedron on one side only, counter-clockwise from
-/// outside.
-OSGVOLUMIZER_CORE_EXPORT std::vector<std::array<TetraSet::Index, 3>>
-boundaryFaces(const TetraSet& set, const Adjacency& adjacency);
-
 /// Affine map from positions to voxel coordinates inside a tetrahedron. Expects voxel coordinates
 /// in the format. SINGULAR_MATRIX for a tetrahedron without volume, INDEX_OUT_OF_RANGE.
 OSGVOLUMIZER_CORE_EXPORT Result<glm::dmat4> positionToVoxel(const TetraSet& set,
