@@ -66,6 +66,7 @@ osg::Vec2d rangeOf(const std::vector<float>& values)
         high = std::max(high, value);
     }
     if (low > high) return {0.0, 1.0};
+    if (low == 0.0f && high == 0.0f) return {0.0, 1.0};
     const double least = 1e-6 * std::max({std::abs(double(low)), std::abs(double(high)), 1e-30});
     return {low, std::max(double(high), low + least)};
 }
@@ -82,9 +83,10 @@ VolumeGeometry::VolumeGeometry() : _private(new Private)
 VolumeGeometry::VolumeGeometry(const VolumeGeometry& o, const osg::CopyOp& op)
     : osg::Drawable(o, op), _private(new Private)
 {
-    _private->tetraSet = o.getTetraSet();
     _private->slackAngle = o.getSlackAngle();
     std::lock_guard<std::mutex> lock(o._private->mutex);
+    _private->tetraSet = o._private->tetraSet;
+    _private->scalarCount = 1;
     _private->fieldShader = o._private->fieldShader;
     _private->scalars = o._private->scalars;
     _private->binding = o._private->binding;
@@ -201,16 +203,20 @@ void VolumeGeometry::removeScalars()
     ++_private->scalarCount;
 }
 
-VolumeGeometry::ScalarsPtr VolumeGeometry::getScalars() const
+VolumeGeometry::ScalarField VolumeGeometry::getScalarField() const
 {
     std::lock_guard<std::mutex> lock(_private->mutex);
-    return _private->scalars;
+    return {_private->scalars, _private->binding, _private->range, _private->scalarCount};
+}
+
+VolumeGeometry::ScalarsPtr VolumeGeometry::getScalars() const
+{
+    return getScalarField().values;
 }
 
 VolumeGeometry::ScalarBinding VolumeGeometry::getScalarBinding() const
 {
-    std::lock_guard<std::mutex> lock(_private->mutex);
-    return _private->binding;
+    return getScalarField().binding;
 }
 
 ReportedStatus VolumeGeometry::setScalarRange(const osg::Vec2d& range)
@@ -229,8 +235,7 @@ ReportedStatus VolumeGeometry::setScalarRange(const osg::Vec2d& range)
 
 osg::Vec2d VolumeGeometry::getScalarRange() const
 {
-    std::lock_guard<std::mutex> lock(_private->mutex);
-    return _private->range;
+    return getScalarField().range;
 }
 
 bool VolumeGeometry::isScalarRangeAutomatic() const

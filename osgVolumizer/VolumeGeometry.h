@@ -55,7 +55,7 @@ public:
     ReportedStatus setTetraSet(core::TetraSet tetraSet);
     /// Never null. Immutable: a frame under way keeps the one it has.
     TetraSetPtr getTetraSet() const;
-    /// Grows with every setTetraSet(). Thread safe.
+    /// Grows with every setTetraSet() and setFieldShader(). Thread safe.
     unsigned getModifiedCount() const;
 
     /// GLSL that makes what is shown of the user values of vertices (core::VertexFormat::userSize):
@@ -75,10 +75,11 @@ public:
     };
     using ScalarsPtr = std::shared_ptr<const std::vector<float>>;
     /// Values that fill the tetrahedra in place of voxels: unstructured grids. The appearance's
-    /// lookup table is applied to them, and its integral over each tetrahedron is exact. Only they
-    /// are sent to the card when they change, so that a time series on one mesh is cheap. Cells of
-    /// values that are NaN or infinite are left out.
-    /// SIZE_MISMATCH where there are not as many as vertices, or tetrahedra; the old ones stay.
+    /// lookup table is applied to them, and its integral over each tetrahedron is exact, but where
+    /// it is marched with other volumes, or a field shader changes it. Only they are sent to the
+    /// card when they change, so that a time series on one mesh is cheap. Cells of values that are
+    /// NaN or infinite are left out. SIZE_MISMATCH where there are not as many as vertices, or
+    /// tetrahedra; the old ones stay.
     ReportedStatus setScalars(std::vector<float> scalars, ScalarBinding binding = PER_VERTEX);
     /// Back to voxels. setTetraSet() does that too where the number of scalars is no longer right.
     void removeScalars();
@@ -92,6 +93,15 @@ public:
     bool isScalarRangeAutomatic() const;
     /// Grows with every change of scalars or their range. Thread safe.
     unsigned getScalarCount() const;
+    /// All of these, as they are at one moment.
+    struct ScalarField
+    {
+        ScalarsPtr values; ///< null for none
+        ScalarBinding binding = PER_VERTEX;
+        osg::Vec2d range{0.0, 1.0};
+        unsigned count = 0;
+    };
+    ScalarField getScalarField() const;
 
     /// Slices of an earlier frame are drawn again while the view has turned by no more than this,
     /// in radians; 0 (default): only while nothing has changed. Saves polygonizing large meshes in

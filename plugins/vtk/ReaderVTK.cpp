@@ -111,7 +111,10 @@ Result<osg::ref_ptr<osg::Node>> read(const std::string& path, const osgDB::Optio
     osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
     appearance->setName(osgDB::getSimpleFileName(path));
     const double step = geometry->spacing;
-    Status status = appearance->setSamplingPeriod(osg::Vec3d(step, step, step));
+    Status status;
+    // Of scalars a period is half a tetrahedron anyway.
+    if (geometry->tetras.vertices.format().colorSize > 0)
+        status = appearance->setSamplingPeriod(osg::Vec3d(step, step, step));
     if (status.ok())
         status = appearance->setOpacityUnit(said->unit > 0.0 ? said->unit : 10.0 * step);
     if (status.ok() && !said->table.empty()) {

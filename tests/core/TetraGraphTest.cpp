@@ -103,29 +103,34 @@ TEST(TetraGraph, OuterFacesAreSeenFromOutside)
     }
 }
 
-TEST(TetraGraph, TheGridHoldsEachFaceWhereItIs)
+TEST(TetraGraph, TheTreeHoldsEachFaceWhereItIs)
 {
-    const TetraSet set = cubes(4);
-    const TetraGraph graph = makeTetraGraph(set);
-    const glm::dvec3 size = graph.gridBox.size(), cells(graph.gridSize);
-    for (std::size_t f = 0; f < graph.faceCount; ++f) {
-        const std::uint32_t* face = &graph.words[graph.facesBegin + TetraGraph::FACE_WORDS * f];
-        for (int i = 0; i < 10; ++i)
-            for (int j = 0; i + j < 10; ++j) {
-                const glm::dvec3 p = (double(i) * set.vertices.position(face[0]) +
-                                      double(j) * set.vertices.position(face[1]) +
-                                      double(9 - i - j) * set.vertices.position(face[2])) /
-                                     9.0;
-                const glm::ivec3 c((p - graph.gridBox.min) / size * cells);
-                const auto cell =
-                    std::size_t(c.x + graph.gridSize.x * (c.y + graph.gridSize.y * c.z));
-                const auto begin = graph.words.begin() + graph.words[graph.gridBegin + cell];
-                const auto end = graph.words.begin() + graph.words[graph.gridBegin + cell + 1];
-                EXPECT_EQ(std::count(begin, end, f), 1) << f;
-            }
+    for (const int n : {1, 3, 4}) {
+        const TetraSet set = cubes(n);
+        const TetraGraph graph = makeTetraGraph(set);
+        ASSERT_GE(graph.leafCount * graph.leafFaces, graph.faceCount);
+        ASSERT_EQ(graph.boxes.size(), 4 * graph.leafCount);
+        std::set<std::array<std::uint32_t, 3>> seen;
+        for (std::size_t f = 0; f < graph.faceCount; ++f) {
+            const std::uint32_t* face = &graph.words[graph.facesBegin + TetraGraph::FACE_WORDS * f];
+            EXPECT_TRUE(seen.insert({face[0], face[1], face[2]}).second);
+            // In its leaf and all above.
+            for (std::size_t node = graph.leafCount + f / graph.leafFaces; node > 0; node /= 2)
+                for (int i = 0; i < 3; ++i)
+                    for (int axis = 0; axis < 3; ++axis) {
+                        const double p = set.vertices.position(face[i])[axis];
+                        EXPECT_LT(graph.boxes[2 * node][axis], p);
+                        EXPECT_GT(graph.boxes[2 * node + 1][axis], p);
+                    }
+        }
+        // Leaves are small: about as large as faces.
+        double area = 0.0;
+        for (std::size_t leaf = graph.leafCount; leaf < 2 * graph.leafCount; ++leaf) {
+            const glm::dvec3 size(graph.boxes[2 * leaf + 1] - graph.boxes[2 * leaf]);
+            area += size.x * size.y + size.y * size.z + size.z * size.x;
+        }
+        EXPECT_LT(area, 2.5 * 6.0 * n * n);
     }
-    EXPECT_EQ(graph.words.size(),
-              graph.words[graph.gridBegin + std::size_t(cells.x * cells.y * cells.z)]);
 }
 
 TEST(TetraGraph, OddCellsAreCounted)
@@ -150,7 +155,7 @@ TEST(TetraGraph, NothingIsAGraphToo)
     EXPECT_EQ(graph.cellCount, 0u);
     EXPECT_EQ(graph.faceCount, 0u);
     EXPECT_EQ(graph.repeatedVertices, 1u);
-    EXPECT_EQ(graph.gridSize, glm::ivec3(1));
+    EXPECT_EQ(graph.leafCount, 1u);
 }
 
 } // namespace TetraGraphTest

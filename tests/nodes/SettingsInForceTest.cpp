@@ -94,7 +94,7 @@ TEST_F(SettingsInForce, ScalarsAreNeverSlices)
         _geometry->setScalars(std::vector<float>(_geometry->getTetraSet()->vertices.size(), 1.0f)));
     _appearance->setTechnique(A::SLICES);
     EXPECT_EQ(settings().technique, A::SLABS);
-    EXPECT_TRUE(hasReason("scalars are not drawn as slices"));
+    EXPECT_TRUE(hasReason("are not drawn as slices"));
 }
 
 TEST_F(SettingsInForce, TheVoxelsDecideAboutInterpolationAndRays)

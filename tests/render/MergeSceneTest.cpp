@@ -198,6 +198,34 @@ void meshInVolume(MixedScene& scene, RenderOptions&)
     addTetrahedra(scene, {6, 10, 4}, 20.0, WARM);
 }
 
+// A quarter is missing, so that rays leave it before its bounds end.
+void cornerInVolume(MixedScene& scene, RenderOptions&)
+{
+    scene.addVolume(blob(), COLD);
+    oracle::TetraMesh mesh = oracle::cornerMesh(4);
+    oracle::transform(
+        mesh, glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(6, 5, 7)), glm::dvec3(21.0)));
+    const auto field = std::make_shared<oracle::RampField>(glm::dvec3(0.01, 0.02, -0.01), 0.3);
+    oracle::sampleField(mesh, *field);
+    osg::ref_ptr<VolumeGeometry> geometry = new VolumeGeometry;
+    ASSERT_TRUE(geometry->setTetraSet(oracle::tetraSet(mesh)).ok());
+    ASSERT_TRUE(geometry->setScalarRange(osg::Vec2d(0.0, 1.0)).ok());
+    ASSERT_TRUE(geometry->setScalars({mesh.scalars.begin(), mesh.scalars.end()}).ok());
+    osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
+    appearance->setLookupTable(makeTable(WARM));
+    appearance->setOpacityUnit(1.0);
+    appearance->addChild(geometry);
+    scene.adopt(*appearance);
+    for (const auto& cell : mesh.cells) {
+        oracle::Volume part;
+        part.region = oracle::tetraRegion({mesh.corner(cell, 0), mesh.corner(cell, 1),
+                                           mesh.corner(cell, 2), mesh.corner(cell, 3)});
+        part.field = field;
+        part.table = oracle::Table(WARM);
+        scene.truth().volumes.push_back(part);
+    }
+}
+
 void meshesAndPlane(MixedScene& scene, RenderOptions&)
 {
     addTetrahedra(scene, {0, 0, 0}, 24.0, WARM);
@@ -302,6 +330,7 @@ const Scene SCENES[] = {{"SlantedPlane", slantedPlane, 0.9},
                         {"DeformedVolume", deformedVolume, 1.9, 4.0, 2e-4},
                         {"MeshAndPlane", meshAndPlane, -1.0, 4.0, 1e-5},
                         {"MeshInVolume", meshInVolume, 1.8, 4.0, 1e-4},
+                        {"CornerInVolume", cornerInVolume, 1.4, 2.0, 1e-4},
                         {"MeshesAndPlane", meshesAndPlane, 1.5, 1.0, 1e-4},
                         {"CameraInside", cameraInside, 0.9},
                         {"Mirror", mirror, 0.9},

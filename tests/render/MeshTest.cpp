@@ -2,6 +2,8 @@
 // double precision, whatever the mesh looks like.
 #include "Volumes.h"
 
+#include <osgVolumizer/VolumeCut.h>
+
 #include <oracles/MeshOracle.h>
 #include <oracles/Ray.h>
 #include <oracles/TestMeshes.h>
@@ -299,6 +301,72 @@ TEST_F(MeshTest, OtherRayFunctionsFindWhatTheyAskFor)
             }
         EXPECT_LT(most, 2e-3) << A::RAY_FUNCTION_NAMES[function];
     }
+}
+
+TEST_F(MeshTest, TablesMayBeOpaque)
+{
+    // Ramps to opacity 1 and beyond, of points and of cells, thin and thick; one point alone.
+    const Points ramp = {{0.0, {1, 0.2, 0.1, 0.0}}, {0.6, {0.1, 0.2, 1, 1.0}}};
+    for (const bool perCell : {false, true})
+        for (const double unit : {0.02, 0.1, 10.0})
+            for (const Points& points : {ramp, Points{{0.5, {0.3, 0.6, 0.9, 1.0}}}}) {
+                oracle::TetraMesh mesh = jittered(4);
+                oracle::sampleField(mesh, Bump(), perCell);
+                const TwinMesh twin = makeTwin(mesh, points, unit);
+                const auto options = viewFrom(OBLIQUE, twin.node->getBound());
+                EXPECT_LT(difference(twin, options, "opaque").rmse, perCell ? 3e-5 : 1e-5) << unit;
+            }
+    oracle::TetraMesh mesh = jittered(4);
+    for (const glm::dvec3& p : mesh.points)
+        mesh.colors.emplace_back(p.x, p.y, p.z, 1.0);
+    const TwinMesh twin = makeTwin(mesh, ramp, 1.0);
+    EXPECT_LT(difference(twin, viewFrom(OBLIQUE, twin.node->getBound()), "solid").rmse, 1e-5);
+}
+
+TEST_F(MeshTest, CopiesAndAnyValuesAreShown)
+{
+    oracle::TetraMesh mesh = jittered(4);
+    oracle::sampleField(mesh, Bump());
+    const TwinMesh twin = makeTwin(mesh, colorfulPoints(), 0.1);
+    const auto options = viewFrom(OBLIQUE, twin.node->getBound());
+    const support::FloatImage expected = support::renderScene(twin.node, options);
+    twin.node->setChild(0, osg::clone(twin.geometry.get(), osg::CopyOp::DEEP_COPY_ALL));
+    EXPECT_EQ(support::compare(support::renderScene(twin.node, options), expected).maximum, 0.0);
+    // Fill values, far beyond the table; nothing at all.
+    twin.node->setChild(0, twin.geometry);
+    std::vector<float> scalars(mesh.points.size(), 9.97e36f);
+    for (const float value : {9.97e36f, -3e38f, 0.0f, NAN}) {
+        std::fill(scalars.begin(), scalars.end(), value);
+        scalars[3] = 0.4f;
+        ASSERT_TRUE(twin.geometry->setScalars(scalars).ok());
+        const support::FloatImage picture = support::renderScene(twin.node, options);
+        for (const glm::vec4& pixel : picture.pixels)
+            ASSERT_TRUE(pixel.a >= 0.0f && pixel.a <= 1.0f) << value;
+        EXPECT_EQ(support::coveredPixels(picture, 0.1f).count() > 0, value >= 0.0f) << value;
+    }
+}
+
+TEST_F(MeshTest, CutsHaveEdgesWithinTetrahedra)
+{
+    // A box of five tetrahedra without the ball in its middle.
+    oracle::TetraMesh mesh = oracle::latticeMesh(glm::ivec3(1));
+    mesh.scalars.assign(mesh.points.size(), 0.4);
+    const Points constant = {{0.0, {0.8, 0.4, 0.2, 0.3}}};
+    const TwinMesh twin = makeTwin(mesh, constant, 0.3);
+    osg::ref_ptr<VolumeCut> cut = new VolumeCut;
+    cut->addRegion(CutRegion::sphere({0.5, 0.5, 0.5}, 0.4).complement());
+    twin.node->setCut(cut);
+    const auto options = viewFrom(OBLIQUE, twin.node->getBound(), true);
+    const support::FloatImage picture = support::renderScene(twin.node, options);
+    support::savePicture(picture, "mesh_cut");
+    // Through the middle what is left is shorter by the ball.
+    const auto depthOf = [](float alpha) { return -std::log1p(-double(alpha)); };
+    twin.node->setCut(nullptr);
+    const support::FloatImage whole = support::renderScene(twin.node, options);
+    const std::size_t middle = 48 * 96 + 48;
+    const double extinction = -std::log1p(-0.3) / 0.3;
+    EXPECT_NEAR(depthOf(whole.pixels[middle].a) - depthOf(picture.pixels[middle].a),
+                extinction * 0.8, 0.01);
 }
 
 TEST_F(MeshTest, OddCellsAreLeftOutAndCountedOnce)

@@ -64,9 +64,11 @@ void dropTwins(const TetraSet& set, const std::vector<Face>& faces, TetraGraph& 
     const auto apex = [&](const Face& face) {
         return sortedVertices(set, graph.numbers[face.cell])[face.opposite];
     };
-    for (std::size_t i = 0; i < faces.size(); ++i)
-        for (std::size_t k = i; k-- > 0 && faces[k].vertices == faces[i].vertices;)
-            if (faces[i].opposite == 0 && apex(faces[k]) == apex(faces[i])) {
+    for (std::size_t i = 1; i < faces.size(); ++i)
+        // Of one tetrahedron the lowest vertex is opposite to one face only.
+        for (std::size_t k = i;
+             k-- > 0 && faces[i].opposite == 0 && faces[k].vertices == faces[i].vertices;)
+            if (apex(faces[k]) == apex(faces[i])) {
                 twins.push_back(graph.numbers[faces[i].cell]);
                 break;
             }
@@ -140,77 +142,85 @@ void joinCells(const TetraSet& set, const std::vector<Face>& faces, TetraGraph& 
     }
 }
 
-// The grid's cells are about as large as outer faces, and as long as they are wide.
-void layOutGrid(const TetraSet& set, TetraGraph& graph)
-{
-    constexpr double MOST = 128.0, MARGIN = 1e-5;
-    Box3d box = set.bounds();
-    const glm::dvec3 extent = box.size();
-    const double longest = std::max({extent.x, extent.y, extent.z});
-    const glm::dvec3 margin(MARGIN * std::max(longest, 1e-30));
-    graph.gridBox = {box.min - margin, box.max + margin};
-    const glm::dvec3 size = graph.gridBox.size();
-    const double area = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
-    const double edge = std::sqrt(2.0 * area / static_cast<double>(graph.faceCount + 1));
-    graph.gridSize =
-        glm::ivec3(glm::clamp(glm::ceil(size / edge), glm::dvec3(1.0), glm::dvec3(MOST)));
-}
+constexpr std::size_t LEAF_FACES = 2;
 
-// Cells of the grid, both ends included, that a face may reach into.
-struct CellSpan
-{
-    glm::ivec3 first, last;
-};
-
-CellSpan spanOf(const TetraSet& set, const TetraGraph& graph, std::size_t face)
+struct BoxedFace
 {
     Box3d box;
-    for (std::size_t i = 0; i < 3; ++i)
-        box.expand(set.vertices.position(
-            graph.words[graph.facesBegin + TetraGraph::FACE_WORDS * face + i]));
-    const glm::dvec3 size = graph.gridBox.size(), cells(graph.gridSize);
-    const glm::dvec3 margin = 1e-6 * size;
-    const auto cellOf = [&](const glm::dvec3& p) {
-        return glm::ivec3(glm::clamp(glm::floor((p - graph.gridBox.min) / size * cells),
-                                     glm::dvec3(0.0), cells - 1.0));
-    };
-    return {cellOf(box.min - margin), cellOf(box.max + margin)};
-}
+    std::array<std::uint32_t, TetraGraph::FACE_WORDS> words;
+};
 
-template <class Visit>
-void forEachCell(const CellSpan& span, const glm::ivec3& gridSize, const Visit& visit)
+std::vector<BoxedFace> boxedFaces(const TetraSet& set, const TetraGraph& graph)
 {
-    for (int z = span.first.z; z <= span.last.z; ++z)
-        for (int y = span.first.y; y <= span.last.y; ++y)
-            for (int x = span.first.x; x <= span.last.x; ++x)
-                visit(static_cast<std::size_t>(x) +
-                      static_cast<std::size_t>(gridSize.x) *
-                          (static_cast<std::size_t>(y) +
-                           static_cast<std::size_t>(gridSize.y) * static_cast<std::size_t>(z)));
-}
-
-void fillGrid(const TetraSet& set, TetraGraph& graph)
-{
-    layOutGrid(set, graph);
-    const std::size_t cells = std::size_t(graph.gridSize.x) * std::size_t(graph.gridSize.y) *
-                              std::size_t(graph.gridSize.z);
-    std::vector<std::uint32_t> ends(cells + 1, 0);
-    std::vector<CellSpan> spans;
-    for (std::size_t f = 0; f < graph.faceCount; ++f) {
-        spans.push_back(spanOf(set, graph, f));
-        forEachCell(spans.back(), graph.gridSize, [&](std::size_t cell) { ++ends[cell + 1]; });
+    std::vector<BoxedFace> faces(graph.faceCount);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        std::copy_n(&graph.words[graph.facesBegin + TetraGraph::FACE_WORDS * f],
+                    TetraGraph::FACE_WORDS, faces[f].words.begin());
+        for (std::size_t i = 0; i < 3; ++i)
+            faces[f].box.expand(set.vertices.position(faces[f].words[i]));
     }
-    graph.gridBegin = graph.words.size();
-    const std::size_t listsBegin = graph.gridBegin + cells + 1;
-    for (std::size_t i = 0; i < cells; ++i)
-        ends[i + 1] += ends[i];
-    graph.words.resize(listsBegin + ends[cells]);
-    for (std::size_t i = 0; i <= cells; ++i)
-        graph.words[graph.gridBegin + i] = static_cast<std::uint32_t>(listsBegin + ends[i]);
-    for (std::size_t f = 0; f < graph.faceCount; ++f)
-        forEachCell(spans[f], graph.gridSize, [&](std::size_t cell) {
-            graph.words[listsBegin + ends[cell]++] = static_cast<std::uint32_t>(f);
-        });
+    return faces;
+}
+
+/// Sorts faces to the leaves of a tree: in the middle of the longest side.
+class TreeBuilder
+{
+public:
+    TreeBuilder(std::vector<BoxedFace>& faces, double margin, TetraGraph& graph)
+        : _faces(faces), _margin(margin), _graph(graph)
+    {
+    }
+    // A node of so many leaves.
+    void build(std::size_t node, std::size_t begin, std::size_t end, std::size_t leaves)
+    {
+        Box3d box;
+        for (std::size_t f = begin; f < end; ++f) {
+            box.expand(_faces[f].box.min);
+            box.expand(_faces[f].box.max);
+        }
+        if (begin >= end) return; // far away, as all boxes are at first
+        _graph.boxes[2 * node] = glm::vec3(box.min - _margin);
+        _graph.boxes[2 * node + 1] = glm::vec3(box.max + _margin);
+        if (leaves == 1) return;
+        const std::size_t middle = std::min(begin + leaves / 2 * _graph.leafFaces, end);
+        const glm::dvec3 size = box.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        if (middle < end)
+            std::nth_element(
+                at(begin), at(middle), at(end), [axis](const BoxedFace& a, const BoxedFace& b) {
+                    return a.box.min[axis] + a.box.max[axis] < b.box.min[axis] + b.box.max[axis];
+                });
+        build(2 * node, begin, middle, leaves / 2);
+        build(2 * node + 1, middle, end, leaves / 2);
+    }
+
+private:
+    std::vector<BoxedFace>::iterator at(std::size_t f)
+    {
+        return _faces.begin() + static_cast<std::ptrdiff_t>(f);
+    }
+
+    std::vector<BoxedFace>& _faces;
+    double _margin;
+    TetraGraph& _graph;
+};
+
+// Boxes are a little larger than what floats make of their faces.
+void growTree(const TetraSet& set, TetraGraph& graph)
+{
+    std::vector<BoxedFace> faces = boxedFaces(set, graph);
+    const Box3d all = set.bounds();
+    const glm::dvec3 reach = glm::max(glm::abs(all.min), glm::abs(all.max));
+    const double margin = 1e-6 * std::max({reach.x, reach.y, reach.z, 1e-30});
+    graph.leafFaces = LEAF_FACES;
+    while (graph.leafCount * LEAF_FACES < faces.size())
+        graph.leafCount *= 2;
+    graph.boxes.assign(4 * graph.leafCount, glm::vec3(1e30f));
+    TreeBuilder(faces, margin, graph).build(1, 0, faces.size(), graph.leafCount);
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        std::copy(faces[f].words.begin(), faces[f].words.end(),
+                  graph.words.begin() +
+                      static_cast<std::ptrdiff_t>(graph.facesBegin + TetraGraph::FACE_WORDS * f));
 }
 
 } // namespace
@@ -240,7 +250,7 @@ TetraGraph makeTetraGraph(const TetraSet& set)
     if (graph.twice > 0) faces = facesOf(set, graph);
     layOutCells(set, graph);
     joinCells(set, faces, graph);
-    fillGrid(set, graph);
+    growTree(set, graph);
     return graph;
 }
 

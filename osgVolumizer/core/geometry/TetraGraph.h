@@ -18,7 +18,7 @@ namespace core {
 /// tetrahedral meshes", IEEE Visualization 2003). Whoever knows three vertices of a tetrahedron
 /// finds the fourth by exclusive or (Aman, Demirci and Gudukbay, "Compact tetrahedralization-based
 /// acceleration structures for ray tracing", Journal of Visualization 25, 2022), so that a
-/// tetrahedron takes 20 bytes. Where rays come in from outside is found in a regular grid over the
+/// tetrahedron takes 20 bytes. Where rays come in from outside is found in a tree of boxes over the
 /// faces that have a tetrahedron on one side only. No mesh is too irregular: rays need no order of
 /// tetrahedra, and so cycles, holes, several pieces and faces that do not match are all the same.
 struct OSGVOLUMIZER_CORE_EXPORT TetraGraph
@@ -30,13 +30,15 @@ struct OSGVOLUMIZER_CORE_EXPORT TetraGraph
     /// CELL_WORDS a tetrahedron: its vertices, exclusive or; then its neighbours over the faces
     /// opposite its vertices, by ascending index of vertex.
     /// FACE_WORDS an outer face: its vertices, counter-clockwise from outside, and its tetrahedron.
-    /// A word for each cell of the grid, x fastest, and one more: where its list begins among all
-    /// words, and the last one's ends. The lists: numbers of outer faces.
     std::vector<std::uint32_t> words;
-    std::size_t facesBegin = 0, gridBegin = 0; ///< in words
+    std::size_t facesBegin = 0; ///< in words
     std::size_t cellCount = 0, faceCount = 0;
-    glm::ivec3 gridSize{1}; ///< cells an axis
-    Box3d gridBox;          ///< a little larger than the mesh
+    /// The lowest and the highest corner of each node, a little outwards, one after another; both
+    /// far away where there are no faces. Node 1 is the root, node n has children 2n and 2n + 1;
+    /// nothing is at 0. The last `leafCount` nodes
+    /// are leaves, with `leafFaces` outer faces each, in their order, but for the last ones.
+    std::vector<glm::vec3> boxes;
+    std::size_t leafCount = 1, leafFaces = 1;
     /// Of each tetrahedron, the number that it has in the set.
     std::vector<std::uint32_t> numbers;
 

@@ -123,6 +123,26 @@ SeenPlace firstScalar(const PickLook& look, const std::vector<Span>& spans, doub
     return extreme && place.found && look.opacity(sign * best) >= opacity ? place : SeenPlace();
 }
 
+// AVERAGE and SUM of scalars: the middle of what is gathered.
+SeenPlace middleOfScalars(const PickLook& look, const std::vector<Span>& spans, double units,
+                          double opacity)
+{
+    double sum = 0.0, length = 0.0;
+    for (const Span& span : spans) {
+        const double part = units * (span.end - span.begin);
+        sum += part * look.fraction(span.scalarAt(0.5 * (span.begin + span.end)));
+        length += part;
+    }
+    const double gathered = look.rayFunction == A::AVERAGE ? sum / length : sum;
+    if (!(length > 0.0) || look.opacity(gathered) < opacity) return {};
+    double half = 0.5 * length / units;
+    for (const Span& span : spans) {
+        if (half <= span.end - span.begin) return seenAt(span, span.begin + half);
+        half -= span.end - span.begin;
+    }
+    return seenAt(spans.back(), spans.back().end);
+}
+
 // Of a cell in which the value crosses the iso-value between two parameters.
 double rootBetween(const CellPart& part, double iso, double low, double high)
 {
@@ -296,6 +316,8 @@ SeenPlace findSeenPlace(ValueField* field, const PickLook& look, const std::vect
                         double units, double opacity)
 {
     if (look.paints) return {};
+    const bool gathered = look.rayFunction == A::AVERAGE || look.rayFunction == A::SUM;
+    if (!field && look.scalars && gathered) return middleOfScalars(look, spans, units, opacity);
     const bool searched = look.rayFunction == A::ISOSURFACE || look.rayFunction == A::MAXIMUM ||
                           look.rayFunction == A::MINIMUM;
     if (!field && look.scalars && searched) return firstScalar(look, spans, opacity);

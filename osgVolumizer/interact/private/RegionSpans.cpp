@@ -23,16 +23,15 @@ class RegionCache : public PickData
 public:
     std::shared_ptr<const PickRegion> get(const VolumeGeometry& geometry, const Voxels* voxels)
     {
-        const auto scalars = geometry.getScalars();
+        const VolumeGeometry::ScalarField scalars = geometry.getScalarField();
         const Key key{geometry.getModifiedCount(), voxels, voxels ? voxels->getLayoutCount() : 0,
-                      geometry.getScalarCount()};
+                      scalars.count};
         std::lock_guard<std::mutex> lock(_mutex);
         if (const auto* known = _regions.find(key)) return *known;
         const auto prepared =
             render::renderData<render::GeometryCache>(geometry)->get(geometry, voxels);
         return _regions.add(key, prepared
-                                     ? std::make_shared<const PickRegion>(
-                                           prepared, voxels, scalars, geometry.getScalarBinding())
+                                     ? std::make_shared<const PickRegion>(prepared, voxels, scalars)
                                      : nullptr);
     }
 
@@ -73,12 +72,15 @@ bool Segment::valid() const
 }
 
 PickRegion::PickRegion(std::shared_ptr<const render::PreparedGeometry> prepared,
-                       const Voxels* voxels, VolumeGeometry::ScalarsPtr scalars,
-                       VolumeGeometry::ScalarBinding binding)
+                       const Voxels* voxels, const VolumeGeometry::ScalarField& scalars)
     : _prepared(std::move(prepared)), _toFrame(glm::inverse(glm::dmat3(_prepared->frameToObject))),
       _crossings(std::shared_ptr<const core::TetraSet>(_prepared, &_prepared->tetras)),
-      _scalars(std::move(scalars)), _binding(binding)
+      _ofCells(scalars.binding == VolumeGeometry::PER_TETRAHEDRON)
 {
+    const core::TetraSet& set = _prepared->tetras;
+    if (scalars.values &&
+        scalars.values->size() == (_ofCells ? set.tetraCount() : set.vertices.size()))
+        _scalars = scalars.values;
     constexpr double END = std::numeric_limits<double>::infinity();
     _extent = {glm::dvec3(-END), glm::dvec3(END)};
     if (voxels) _extent = voxels->getLayout().extent();
@@ -171,7 +173,7 @@ Span PickRegion::spanOf(const core::TetraCrossings::Crossing& crossing, const gl
 // Of one corner without a value the tetrahedron has none.
 void PickRegion::setScalars(const core::TetraCrossings::Crossing& crossing, Span& span) const
 {
-    if (_binding == VolumeGeometry::PER_TETRAHEDRON) {
+    if (_ofCells) {
         span.scalar = (*_scalars)[crossing.tetrahedron];
         return;
     }

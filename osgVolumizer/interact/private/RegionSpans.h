@@ -47,7 +47,7 @@ class PickRegion
 public:
     /// Expects that there are tetrahedra.
     PickRegion(std::shared_ptr<const render::PreparedGeometry> prepared, const Voxels* voxels,
-               VolumeGeometry::ScalarsPtr scalars, VolumeGeometry::ScalarBinding binding);
+               const VolumeGeometry::ScalarField& scalars);
 
     const render::PreparedGeometry& prepared() const { return *_prepared; }
     bool hasColors() const { return _prepared->tetras.vertices.format().colorSize > 0; }
@@ -82,7 +82,7 @@ private:
     core::Box3d _extent;
     core::TetraCrossings _crossings;
     VolumeGeometry::ScalarsPtr _scalars; ///< null for none
-    VolumeGeometry::ScalarBinding _binding;
+    bool _ofCells;
 };
 
 /// The region, made once for each state of geometry and voxels; null where it is empty. `voxels`

@@ -17,7 +17,7 @@ enum TextureUnit : unsigned
     UNIT_FIRST_CAPTURED,                    ///< and the following: captured depths
     UNIT_FIRST_PAINT = UNIT_FIRST_CAPTURED, ///< and the following, in other programs
     /// With four paints, the grid of a cut, and what tetrahedra have: see tetraUnitOf().
-    UNIT_COUNT = UNIT_FIRST_CAPTURED + 8 + 1 + 6
+    UNIT_COUNT = UNIT_FIRST_CAPTURED + 8 + 1 + 7
 };
 /// Image unit of compute shaders: the last one that every context has, since scenes begin with the
 /// first.

@@ -32,10 +32,6 @@ public:
     }
     void set(const char* name, float v) const { _gl.glUniform1f(location(name), v); }
     void set(const char* name, int v) const { _gl.glUniform1i(location(name), v); }
-    void set(const char* name, const glm::ivec3& v) const
-    {
-        _gl.glUniform3i(location(name), v.x, v.y, v.z);
-    }
     void set(const char* name, const glm::vec2& v) const
     {
         _gl.glUniform2fv(location(name), 1, glm::value_ptr(v));

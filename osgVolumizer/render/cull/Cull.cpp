@@ -143,7 +143,8 @@ std::unique_ptr<VolumeInstance> makeInstance(VolumeGeometry& geometry,
     if (voxels) volume->steps = timeStepsOf(appearance, visitor.getFrameStamp());
     if (voxels || volume->prepared->scalars) table = chooseSampling(*volume, visitor);
     volume->look = makeLook(*volume, table, visitor);
-    return volume;
+    const bool lacksTetrahedra = volume->look->features.tetrahedra && !volume->look->tetrahedra;
+    return lacksTetrahedra ? nullptr : std::move(volume);
 }
 
 // False where no brick shows anything.

@@ -121,8 +121,10 @@ bool setBatch(const BatchDrawing& drawing, const BrickBatch& batch)
         uniforms.set("brickMin", batch.brickMin);
         uniforms.set("brickMax", batch.brickMax);
     }
-    // What is the same everywhere is not in fog.
-    const bool fades = drawing.features.fog && batch.stride == ALL_STEPS;
+    // What is the same everywhere is not in fog, nor by colours of vertices.
+    const ProgramFeatures& features = drawing.features;
+    const bool varies = features.fog || features.vertexColors || features.fieldCount > 0;
+    const bool fades = varies && batch.stride == ALL_STEPS;
     uniforms.set("stride", fades ? 1.0f : batch.stride);
     uniforms.set("clipMin", batch.clipMin);
     uniforms.set("clipMax", batch.clipMax);

@@ -59,7 +59,8 @@ bool isHomogeneous(const FusedMember& member)
 {
     const ProgramFeatures& features = member.part->features;
     return member.batch.cells && member.batch.cells->homogeneous && !features.shading &&
-           features.paintCount == 0 && !features.fog;
+           features.paintCount == 0 && !features.fog && !features.vertexColors &&
+           features.fieldCount == 0;
 }
 
 // Values and table of a member, for a program whose names of them have a suffix or none.

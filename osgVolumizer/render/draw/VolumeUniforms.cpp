@@ -1,6 +1,7 @@
 #include "VolumeUniforms.h"
 
 #include "../context/Allocation.h"
+#include "../context/ContextLimits.h"
 #include "../context/ProgramInterface.h"
 #include "../context/ReportOnce.h"
 
@@ -135,12 +136,14 @@ constexpr std::size_t MOST_TETRAHEDRA = 1 << 20;
 bool applyBuffer(osg::State& state, osg::TextureBuffer& buffer, unsigned unit)
 {
     const GLint most = largestBufferTexture();
-    const bool fits = buffer.getImage()->s() <= most;
+    const int units = textureUnitsOf(state);
+    const bool fits =
+        buffer.getImage()->s() <= most && (units == 0 || static_cast<int>(unit) < units);
     if (fits && applyAllocated(state, AllocationRequest::TETRAHEDRA, buffer, unit)) return true;
     reportOnce({ErrorCode::TOO_LARGE,
-                "tetrahedra do not fit into the graphics card's memory, or into its buffer "
-                "textures of " +
-                    std::to_string(most) + " texels; volumes of them are not drawn"});
+                "tetrahedra do not fit into the graphics card's memory, its buffer textures of " +
+                    std::to_string(most) + " texels, or its " + std::to_string(units) +
+                    " texture units; volumes of them are not drawn"});
     return false;
 }
 
@@ -163,6 +166,7 @@ bool setTetrahedra(osg::State& state, const Uniforms& uniforms, const VolumeLook
     const std::pair<const char*, osg::TextureBuffer*> buffers[] = {
         {"tetraGraph", t.graph.get()},
         {"tetraPositions", t.positions.get()},
+        {"tetraBoxes", t.boxes.get()},
         {"tetraScalars", look.features.scalars ? t.scalars.get() : nullptr},
         {"tetraFields", look.features.fieldCount > 0 ? t.fields.get() : nullptr},
         {"tetraPlaces", look.features.places ? t.places.get() : nullptr},
@@ -173,10 +177,10 @@ bool setTetrahedra(osg::State& state, const Uniforms& uniforms, const VolumeLook
         uniforms.set(buffer.first, static_cast<int>(unit++));
     }
     uniforms.set("tetraFacesBegin", t.facesBegin);
-    uniforms.set("tetraGridBegin", t.gridBegin);
-    uniforms.set("tetraGridSize", t.gridSize);
-    uniforms.set("tetraGridMin", t.gridMin);
-    uniforms.set("tetraGridScale", t.gridScale);
+    uniforms.set("tetraFaceCount", t.faceCount);
+    uniforms.set("tetraLeafCount", t.leafCount);
+    uniforms.set("tetraLeafFaces", t.leafFaces);
+    uniforms.set("tetraSize", t.size);
     uniforms.set("mostTetrahedra",
                  static_cast<int>(std::min<std::size_t>(2 * t.cellCount + 16, MOST_TETRAHEDRA)));
     uniforms.set("lastPoint", look.table.count - 1);

@@ -126,10 +126,12 @@ std::shared_ptr<const TableTexture> makeTable(const LookupTable& table, const os
     return made;
 }
 
+constexpr double FAR_AWAY = 1e30; // beyond what scalars are held to
+
 // The points that a function needs, between two far away that are like the first and the last.
 std::vector<core::TransferFunction::Point> cornersOf(const core::TransferFunction& function)
 {
-    constexpr double FAR_AWAY = 1e30, TOLERANCE = 1e-9;
+    constexpr double TOLERANCE = 1e-9;
     using Point = core::TransferFunction::Point;
     const std::vector<Point>& all = function.points();
     std::vector<Point> corners{{-FAR_AWAY, all.front().color}};
@@ -156,7 +158,8 @@ std::shared_ptr<const TableTexture> makePoints(const LookupTable& table, const o
     std::vector<glm::vec4> texels;
     for (const auto& corner : corners) {
         texels.emplace_back(corner.color);
-        texels.emplace_back(static_cast<float>(corner.value), 0.0f, 0.0f, 0.0f);
+        texels.emplace_back(static_cast<float>(std::clamp(corner.value, -FAR_AWAY, FAR_AWAY)), 0.0f,
+                            0.0f, 0.0f);
     }
     made->texture = makeTexture(texels);
     return made;

@@ -58,7 +58,7 @@ glm::dvec4 colorOf(const core::VertexArray& vertices, std::size_t i)
 std::vector<osg::TextureBuffer*> TetraTextures::all() const
 {
     std::vector<osg::TextureBuffer*> result;
-    for (const auto& texture : {graph, positions, places, colors, fields, scalars})
+    for (const auto& texture : {graph, positions, boxes, places, colors, fields, scalars})
         if (texture) result.push_back(texture.get());
     return result;
 }
@@ -71,24 +71,29 @@ std::size_t TetraTextures::bytes() const
     return sum;
 }
 
-std::size_t TetraTextures::largestBuffer() const
-{
-    std::size_t largest = 0;
-    for (const osg::TextureBuffer* texture : all())
-        largest = std::max(largest, static_cast<std::size_t>(texture->getImage()->s()));
-    return largest;
-}
-
 std::shared_ptr<const TetraTextures> makeTetraTextures(const core::TetraSet& set, bool places)
 {
+    // Image counts the bits of a row in an int.
+    constexpr std::size_t MOST_TEXELS = std::size_t(1) << 24, MOST_WORDS = std::size_t(1) << 26;
+    const std::size_t fields = static_cast<std::size_t>(set.vertices.format().userSize);
+    if (set.vertices.size() >= MOST_TEXELS || set.vertices.size() * fields >= MOST_WORDS ||
+        set.tetraCount() >= MOST_WORDS)
+        return nullptr;
     core::TetraGraph graph = core::makeTetraGraph(set);
+    if (graph.words.size() >= MOST_WORDS || graph.boxes.size() >= MOST_TEXELS) return nullptr;
     auto result = std::make_shared<TetraTextures>();
     result->cellCount = graph.cellCount;
     result->facesBegin = static_cast<int>(graph.facesBegin);
-    result->gridBegin = static_cast<int>(graph.gridBegin);
-    result->gridSize = graph.gridSize;
-    result->gridMin = glm::vec3(graph.gridBox.min);
-    result->gridScale = glm::vec3(glm::dvec3(graph.gridSize) / graph.gridBox.size());
+    result->vertexCount = set.vertices.size();
+    result->faceCount = static_cast<int>(graph.faceCount);
+    result->leafCount = static_cast<int>(graph.leafCount);
+    result->leafFaces = static_cast<int>(graph.leafFaces);
+    const glm::dvec3 size = set.bounds().size();
+    result->size = static_cast<float>(std::max({size.x, size.y, size.z}));
+    std::vector<glm::vec4> boxes;
+    for (const glm::vec3& corner : graph.boxes)
+        boxes.emplace_back(corner, 0.0f);
+    result->boxes = vectorTexture(boxes);
     result->oddities = graph.oddities();
     result->isOdd = graph.isOdd();
     result->graph = bufferTexture(graph.words, RED_INTEGER, GL_UNSIGNED_INT, R32UI);
@@ -117,21 +122,22 @@ std::shared_ptr<const TetraTextures> withScalars(const TetraTextures& textures,
                                                  const VolumeGeometry& geometry)
 {
     auto result = std::make_shared<TetraTextures>(textures);
-    // Counted before they are taken: what changes in between is taken again.
-    result->scalarCount = geometry.getScalarCount();
-    result->scalars = nullptr;
-    const VolumeGeometry::ScalarsPtr scalars = geometry.getScalars();
-    const osg::Vec2d range = geometry.getScalarRange();
-    const bool ofCells = geometry.getScalarBinding() == VolumeGeometry::PER_TETRAHEDRON;
-    if (!scalars) return result;
+    const VolumeGeometry::ScalarField field = geometry.getScalarField();
+    const VolumeGeometry::ScalarsPtr scalars =
+        field.values ? field.values : std::make_shared<const std::vector<float>>();
+    const osg::Vec2d range = field.range;
+    const bool ofCells = field.binding == VolumeGeometry::PER_TETRAHEDRON;
+    result->scalarCount = field.count;
+    result->ofCells = ofCells;
+    result->range = range;
     const double perUnit = 1.0 / (range.y() - range.x());
-    std::vector<float> fractions(ofCells ? textures.numbers->size() : scalars->size());
+    std::vector<float> fractions(ofCells ? textures.numbers->size() : textures.vertexCount);
     for (std::size_t i = 0; i < fractions.size(); ++i) {
         const std::size_t from = ofCells ? (*textures.numbers)[i] : i;
         const double value = from < scalars->size() ? (*scalars)[from] : NAN;
         fractions[i] =
             std::isfinite(value)
-                ? static_cast<float>(std::clamp((value - range.x()) * perUnit, -1e30, 1e30))
+                ? static_cast<float>(std::clamp((value - range.x()) * perUnit, -1e29, 1e29))
                 : NO_SCALAR;
     }
     result->scalars = bufferTexture(fractions, GL_RED, GL_FLOAT, GL_R32F);

@@ -3,6 +3,7 @@
 #include "../../core/geometry/TetraSet.h"
 
 #include <osg/TextureBuffer>
+#include <osg/Vec2d>
 
 #include <glm/vec3.hpp>
 
@@ -25,22 +26,25 @@ struct TetraTextures
     osg::ref_ptr<osg::TextureBuffer> fields;    ///< user values, one texel each; or null
     /// Fractions of the range of scalars, of vertices or tetrahedra; 3e38: none. Or null.
     osg::ref_ptr<osg::TextureBuffer> scalars;
-    unsigned scalarCount = 0; ///< of the geometry, that the scalars are of
+    unsigned scalarCount = 0;   ///< of the geometry, that the scalars are of
+    bool ofCells = false;       ///< scalars
+    osg::Vec2d range{0.0, 1.0}; ///< of scalars
     std::size_t cellCount = 0;
-    int facesBegin = 0, gridBegin = 0; ///< words
-    glm::ivec3 gridSize{1};
-    glm::vec3 gridMin{0.0f}, gridScale{1.0f};                  ///< frame; cells per frame unit
+    std::size_t vertexCount = 0;
+    osg::ref_ptr<osg::TextureBuffer> boxes; ///< of outer faces: core::TetraGraph::boxes
+    int facesBegin = 0;                     ///< words
+    int faceCount = 0, leafCount = 1, leafFaces = 1;
+    float size = 1.0f; ///< frame; longest side of the bounds
     std::shared_ptr<const std::vector<std::uint32_t>> numbers; ///< of tetrahedra, in the set
     bool isOdd = false;
     std::string oddities; ///< see core::TetraGraph
 
     std::vector<osg::TextureBuffer*> all() const;
     std::size_t bytes() const; ///< on the card
-    /// Texels of the largest buffer.
-    std::size_t largestBuffer() const;
 };
 
-/// \param places whether voxel coordinates are needed
+/// Null where there is more than an osg::Image can hold: 16 million vertices, or some 10 million
+/// tetrahedra. \param places whether voxel coordinates are needed
 std::shared_ptr<const TetraTextures> makeTetraTextures(const core::TetraSet& set, bool places);
 /// The same, filled with the scalars that a geometry has now.
 std::shared_ptr<const TetraTextures> withScalars(const TetraTextures& textures,

@@ -11,6 +11,15 @@
 namespace osgVolumizer {
 namespace render {
 
+namespace {
+
+std::vector<osg::TextureBuffer*> texturesOf(const std::shared_ptr<const TetraTextures>& textures)
+{
+    return textures ? textures->all() : std::vector<osg::TextureBuffer*>();
+}
+
+} // namespace
+
 GeometryCache::GeometryCache() : _slices(std::make_shared<SliceCache>()) {}
 
 GeometryCache::Key GeometryCache::keyOf(const VolumeGeometry& geometry, const Voxels* voxels)
@@ -33,23 +42,26 @@ std::shared_ptr<const PreparedGeometry> GeometryCache::get(const VolumeGeometry&
                              std::max(fieldShaderNumber(geometry.getFieldShader()), 0)));
 }
 
-std::shared_ptr<const TetraTextures> GeometryCache::tetrahedra(const VolumeGeometry& geometry,
-                                                               const Voxels* voxels)
+std::shared_ptr<const TetraTextures>
+GeometryCache::tetrahedra(const VolumeGeometry& geometry,
+                          const std::shared_ptr<const PreparedGeometry>& prepared)
 {
-    const auto prepared = get(geometry, voxels);
-    const Key key = keyOf(geometry, voxels);
-    std::lock_guard<std::mutex> lock(_mutex);
-    const auto* known = _graphs.find(key);
-    auto textures = known ? *known : nullptr;
-    if (!textures) {
-        textures = makeTetraTextures(prepared->tetras, !prepared->voxelFrame);
-        if (textures->isOdd)
-            reportOnce({ErrorCode::VALUE_INVALID,
-                        "VolumeGeometry \"" + geometry.getName() + "\": " + textures->oddities});
-    }
-    if (prepared->scalars && textures->scalarCount != geometry.getScalarCount())
-        textures = withScalars(*textures, geometry);
-    return known && *known == textures ? textures : _graphs.add(key, textures);
+    std::unique_lock<std::mutex> lock(_mutex);
+    const auto* known = _graphs.find(prepared);
+    const bool isNew = !known;
+    auto textures = known ? *known : makeTetraTextures(prepared->tetras, !prepared->voxelFrame);
+    const bool hasAll = !textures || !prepared->scalars ||
+                        (textures->scalars && textures->scalarCount == geometry.getScalarCount());
+    if (!hasAll) textures = withScalars(*textures, geometry);
+    if (isNew || !hasAll) _graphs.add(prepared, textures);
+    lock.unlock(); // an error handler may ask for anything
+    const std::string name = "VolumeGeometry \"" + geometry.getName() + "\": ";
+    if (!textures)
+        reportOnce(
+            {ErrorCode::TOO_LARGE, name + "there are too many tetrahedra; they are not drawn"});
+    else if (isNew && textures->isOdd)
+        reportOnce({ErrorCode::VALUE_INVALID, name + textures->oddities});
+    return textures;
 }
 
 osg::ref_ptr<osg::Geometry> GeometryCache::outlines(const VolumeGeometry& geometry,
@@ -71,7 +83,7 @@ void GeometryCache::resizeGLObjectBuffers(unsigned int maximum)
     for (const auto& lines : _outlines)
         lines.value->resizeGLObjectBuffers(maximum);
     for (const auto& graph : _graphs)
-        for (osg::Texture* texture : graph.value->all())
+        for (osg::Texture* texture : texturesOf(graph.value))
             texture->resizeGLObjectBuffers(maximum);
 }
 
@@ -81,7 +93,7 @@ void GeometryCache::releaseGLObjects(osg::State* state) const
     for (const auto& lines : _outlines)
         lines.value->releaseGLObjects(state);
     for (const auto& graph : _graphs)
-        for (osg::Texture* texture : graph.value->all())
+        for (osg::Texture* texture : texturesOf(graph.value))
             texture->releaseGLObjects(state);
 }
 

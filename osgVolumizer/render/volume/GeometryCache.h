@@ -28,9 +28,10 @@ public:
     std::shared_ptr<const PreparedGeometry> get(const VolumeGeometry& geometry,
                                                 const Voxels* voxels);
     /// What rays walk through: the graph, and what fills it. Of scalars that change only these are
-    /// made anew. Null where it does not fit into a buffer texture.
-    std::shared_ptr<const TetraTextures> tetrahedra(const VolumeGeometry& geometry,
-                                                    const Voxels* voxels);
+    /// made anew. Null, reported, where there is too much of it.
+    std::shared_ptr<const TetraTextures>
+    tetrahedra(const VolumeGeometry& geometry,
+               const std::shared_ptr<const PreparedGeometry>& prepared);
     /// The edges of the tetrahedra, and of the bricks where these are in the same frame, as lines
     /// in the frame of the prepared geometry. Expects that there are tetrahedra.
     osg::ref_ptr<osg::Geometry> outlines(const VolumeGeometry& geometry, const Voxels* voxels);
@@ -59,7 +60,9 @@ private:
     mutable std::mutex _mutex; ///< of what follows
     core::RecencyCache<Key, std::shared_ptr<const PreparedGeometry>> _prepared{CAPACITY};
     core::RecencyCache<Key, osg::ref_ptr<osg::Geometry>> _outlines{CAPACITY};
-    core::RecencyCache<Key, std::shared_ptr<const TetraTextures>> _graphs{CAPACITY};
+    core::RecencyCache<std::shared_ptr<const PreparedGeometry>,
+                       std::shared_ptr<const TetraTextures>>
+        _graphs{CAPACITY};
 };
 
 } // namespace render

@@ -148,9 +148,8 @@ void setValues(const VolumeAppearance& appearance, const Voxels& voxels, VolumeL
 // Scalars are fractions of their range.
 void setScalars(const VolumeInstance& volume, VolumeLook& look)
 {
-    const VolumeGeometry& geometry = *volume.geometry;
-    const osg::Vec2d range = geometry.getScalarRange();
-    look.features.cellScalars = geometry.getScalarBinding() == VolumeGeometry::PER_TETRAHEDRON;
+    const osg::Vec2d range = look.tetrahedra->range;
+    look.features.cellScalars = look.tetrahedra->ofCells;
     look.valueToEntry = glm::vec2(look.table.count - 1.0, 0.0);
     look.isoTexel =
         inFloats((volume.appearance->getIsoValue() - range.x()) / (range.y() - range.x()));
@@ -172,9 +171,12 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     if (volume.above.fog) look->fog = *volume.above.fog;
     features.fog = volume.above.fog.has_value();
     features.spherical = !features.slab && volume.sampling.mode == SamplingMode::SPHERICAL;
-    if (prepared.scalars)
+    if (features.tetrahedra)
+        look->tetrahedra = renderData<GeometryCache>(*volume.geometry)
+                               ->tetrahedra(*volume.geometry, volume.prepared);
+    if (prepared.scalars && look->tetrahedra)
         setScalars(volume, *look);
-    else if (appearance.getVoxels())
+    else if (!prepared.scalars && appearance.getVoxels())
         setValues(appearance, *appearance.getVoxels(), *look);
     look->frameToUnits =
         frameToUnits(glm::dmat3(prepared.frameToObject), appearance.getEffectiveOpacityUnit());
@@ -189,9 +191,6 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     features.blendsSteps = volume.steps.blended;
     if (features.voxels) setInterpolation(volume, table, look->voxelsPerSample, features, reasons);
     reportReasons(appearance, reasons);
-    if (features.tetrahedra)
-        look->tetrahedra = renderData<GeometryCache>(*volume.geometry)
-                               ->tetrahedra(*volume.geometry, appearance.getVoxels());
     if (features.slab) {
         look->regionMin = glm::vec3(prepared.regionBox.min);
         look->regionMax = glm::vec3(prepared.regionBox.max);

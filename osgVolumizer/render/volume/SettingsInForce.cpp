@@ -20,12 +20,13 @@ bool overlapSuffices(const Voxels& voxels, int samples)
 bool fitIntoOneTexture(const Voxels& voxels)
 {
     constexpr int LARGEST_SIDE = 2048; // that every card with OpenGL 4 has
-    constexpr double MOST_SAMPLES = 1 << 28;
+    constexpr double MOST_BYTES = 1 << 30;
+    constexpr double SAMPLE_BYTES = 16.0; // at most: gradients, or colours, in floats
     const glm::ivec3 size = voxels.getLayout().size();
     if (voxels.isPaged()) return false;
     return voxels.getLayout().brickCount() == 1 ||
            (voxels.getOverlap() >= 1 && std::max({size.x, size.y, size.z}) <= LARGEST_SIDE &&
-            double(size.x) * double(size.y) * double(size.z) <= MOST_SAMPLES);
+            double(size.x) * double(size.y) * double(size.z) * SAMPLE_BYTES <= MOST_BYTES);
 }
 
 bool wantsSurfaces(const VolumeAppearance& appearance)
@@ -39,10 +40,11 @@ bool wantsSurfaces(const VolumeAppearance& appearance)
 std::string whyNoSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
 {
     if (prepared.scalars) return {};
+    const bool needsSlabs = prepared.fieldShader > 0; // slices know no fields
     const Voxels* voxels = appearance.getVoxels();
     if (voxels && !prepared.voxelFrame && !fitIntoOneTexture(*voxels))
         return "the voxels of a deformed volume do not fit into one texture";
-    if (!wantsSurfaces(appearance)) return {};
+    if (needsSlabs || !wantsSurfaces(appearance)) return {};
     return appearance.getSamplingMode() != SamplingMode::VIEWPORT_ALIGNED
                ? "sampling surfaces other than VIEWPORT_ALIGNED are asked for"
                : "a sampling space other than OBJECT is asked for";
@@ -64,7 +66,8 @@ void explainTechnique(const VolumeAppearance& appearance, const PreparedGeometry
     if (!why.empty())
         settings.reasons.push_back(why + "; the technique is slices");
     else if (asked == VolumeAppearance::SLICES)
-        settings.reasons.emplace_back("scalars are not drawn as slices; the technique is slabs");
+        settings.reasons.emplace_back("scalars and fields are not drawn as slices; the technique "
+                                      "is slabs");
     else if (usesTetrahedra(appearance, prepared))
         settings.reasons.emplace_back("rays walk through the tetrahedra; the technique is slabs");
     else
@@ -127,8 +130,9 @@ const Voxels* voxelsIn(const VolumeAppearance& appearance, const PreparedGeometr
 
 bool usesSlabs(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
 {
-    return prepared.scalars || (appearance.getTechnique() != VolumeAppearance::SLICES &&
-                                whyNoSlabs(appearance, prepared).empty());
+    const bool neverSlices = prepared.scalars || prepared.fieldShader > 0;
+    return (neverSlices || appearance.getTechnique() != VolumeAppearance::SLICES) &&
+           whyNoSlabs(appearance, prepared).empty();
 }
 
 bool usesTetrahedra(const VolumeAppearance& appearance, const PreparedGeometry& prepared)

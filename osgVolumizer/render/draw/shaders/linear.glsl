@@ -4,8 +4,15 @@
 
 #define EXACT_ENOUGH 1e-6 // what is let through
 
-// Extinction in bits per opacity unit.
-float extinctionOf(float opacity) { return -log2(max(1.0 - opacity, 5.9604645e-8)); }
+// Extinction in bits per opacity unit. What is opaque but for a rounding is opaque.
+float extinctionOf(float opacity) { return opacity > 0.999999 ? 24.0 : -log2(1.0 - opacity); }
+
+// Mean extinction where opacity goes from a0 to a1, by the extinctions there; `nearby` where the two are much the same.
+float meanExtinction(float a0, float a1, float e0, float e1, float nearby)
+{
+    float u0 = max(1.0 - a0, 0.0), u1 = max(1.0 - a1, 0.0), change = u1 - u0;
+    return abs(change) > 0.25 * max(u0, u1) ? 1.442695 + (u1 * e1 - u0 * e0) / change : nearby;
+}
 
 // Opacity of bits of extinction, without cancelling the digits of little.
 float opacityOf(float bits)
@@ -15,22 +22,24 @@ float opacityOf(float bits)
 }
 
 // Light of a piece of a ray, a length in opacity units of it or its first step if that is too much for one; the share of
-// the piece that was taken.
-vec4 linearLight(vec4 c0, vec4 c1, float units, out float share)
+// the piece that was taken, `least` or more.
+vec4 linearLight(vec4 c0, vec4 c1, float units, float least, out float share)
 {
     const float BITS = 0.2; // of extinction in a step: the rule is off by 1e-6 then
-    float here = extinctionOf(c0.a), end = extinctionOf(c1.a), turn = max(abs(c1.a - c0.a), 1e-30);
+    float here = extinctionOf(c0.a), end = extinctionOf(c1.a), turn = abs(c1.a - c0.a);
     // So long that extinction comes to BITS, and that -log2(1 - opacity) is near a parabola.
     float bits = units * here, slope = max(units * end - bits, 0.0);
     share = 2.0 * BITS / max(bits + sqrt(bits * bits + 2.0 * BITS * slope), 1e-30);
-    share = min(share, max(0.15 * (1.0 - c0.a) / turn, 0.03125));
-    share = share > 0.999 ? 1.0 : share;
+    if (turn > 1e-6) share = min(share, max(0.15 * (1.0 - c0.a) / turn, 0.03125));
+    share = max(share, least);
+    share = share > 0.999 || units * max(here, end) < 1e-4 ? 1.0 : share;
     c1 = mix(c0, c1, share);
-    float middle = extinctionOf(0.5 * (c0.a + c1.a));
+    float a = 0.5 * (c0.a + c1.a), middle = extinctionOf(a);
     end = share < 1.0 ? extinctionOf(c1.a) : end;
     units *= share;
-    float halfway = opacityOf(max(units * (5.0 * here + 8.0 * middle - end) * (1.0 / 24.0), 0.0));
-    float all = opacityOf(units * (here + 4.0 * middle + end) * (1.0 / 6.0));
+    float first = meanExtinction(c0.a, a, here, middle, (5.0 * here + 8.0 * middle - end) * (1.0 / 12.0));
+    float whole = meanExtinction(c0.a, c1.a, here, end, (here + 4.0 * middle + end) * (1.0 / 6.0));
+    float halfway = opacityOf(0.5 * units * max(first, 0.0)), all = opacityOf(units * whole);
     return vec4(c1.rgb * all - (c1.rgb - c0.rgb) * ((4.0 * halfway + all) * (1.0 / 6.0)), all);
 }
 
@@ -51,9 +60,11 @@ void takePoint(int i)
     pointHigh = texelFetch(lookupTable, 2 * i + 3).r;
 }
 
-// One point on, up or down.
+// One point on, up or down; of the last and the first there is none.
 void movePoint(bool up, bool down)
 {
+    up = up && point + 1 < lastPoint;
+    down = down && point > 0;
     int i = up ? point + 2 : max(point - 1, 0);
     vec4 color = texelFetch(lookupTable, 2 * i);
     float at = texelFetch(lookupTable, 2 * i + 1).r;

@@ -50,7 +50,10 @@ void cutStep(float t, inout float end)
 {
     if (left.depth <= t && walked < mostTetrahedra) {
         if (tetrahedron < 0) {
-            if (!enterMesh()) left.depth = 1e30;
+            if (!enterMesh()) {
+                left.depth = 1e30;
+                hasPart = false;
+            }
         } else {
             crossTetrahedron();
         }

@@ -17,18 +17,22 @@ void findPart(float tNear, float tFar, inout vec2 all)
 }
 
 #ifdef EXACT_CELLS
+#define MOST_PIECES 4194304
 float at = -1e30; // depth that light is known up to
 #ifdef SCALARS
 float scalarAt;
 #endif
 
-// Light with that of the scene, and fog, about one depth.
+// Light with that of the scene, paint and fog, about one depth.
 vec4 inScene(vec4 light, float t)
 {
-#if defined(SHADING) || defined(FOG)
+#if defined(SHADING) || defined(FOG) || defined(PAINTED)
     vec4 c = vec4(light.rgb / max(light.a, 1e-30), light.a);
 #ifdef SHADING
     c = lit(c, vec3(0.0), t);
+#endif
+#ifdef PAINTED
+    c.rgb = painted(c.rgb, origin + t * direction);
 #endif
     return vec4(fogged(c.rgb, t) * c.a, c.a);
 #else
@@ -44,6 +48,9 @@ void goOn(float tNear, out float rate)
         at = hasPart ? entered.depth : left.depth;
 #ifdef SCALARS
         if (hasPart) scalarAt = entered.scalar;
+#ifdef CELL_SCALARS
+        findPoint(scalarAt);
+#endif
 #endif
     }
     float skipped = clamp(max(tNear, partBegin), at, left.depth) - at;
@@ -70,7 +77,7 @@ void findPiece(float tFar, float rate, out float next, out float scalarNext, out
     float bound = up ? pointHigh : pointLow;
     if (!here || (up ? scalarNext > bound : scalarNext < bound)) {
         bound = here ? bound : scalarAt;
-        next = clamp(at + (bound - scalarAt) / rate, at, next);
+        next = here && rate != 0.0 ? clamp(at + (bound - scalarAt) / rate, at, next) : at;
         scalarNext = bound;
     }
     c0 = colorBetweenPoints(scalarAt);
@@ -85,10 +92,22 @@ void findPiece(float tFar, float rate, out float next, out vec4 c0, out vec4 c1)
 }
 #endif
 
+// No piece is longer where something else may begin or end within it.
+float longestPiece()
+{
+#if defined(CUT) || defined(FOG) || defined(PAINTED)
+    return tetraSize / (64.0 * length(direction));
+#else
+    return 1e30;
+#endif
+}
+
 vec4 light(float tNear, float tFar)
 {
     tNear = max(tNear, region.x);
     tFar = min(tFar, region.y);
+    int pieces = 0;
+    float longest = longestPiece();
     vec3 color = vec3(0.0);
     float through = 1.0, unitsPerDepth = length(frameToUnits * direction);
     bool more = tNear < tFar, inMesh;
@@ -106,21 +125,24 @@ vec4 light(float tNear, float tFar)
             goOn(tNear, rate);
 #ifdef SCALARS
             float scalarNext;
-            findPiece(tFar, rate, next, scalarNext, c0, c1);
+            findPiece(min(tFar, at + longest), rate, next, scalarNext, c0, c1);
 #else
-            findPiece(tFar, rate, next, c0, c1);
+            findPiece(min(tFar, at + longest), rate, next, c0, c1);
 #endif
             float units = max(next - at, 0.0) * unitsPerDepth;
             units *= keptAbout(origin, direction, 0.5 * (at + next), next - at);
-            vec4 piece = inScene(linearLight(c0, c1, hasPart ? units : 0.0, share), 0.5 * (at + next));
+            float least = 4e-7 * max(abs(at), abs(next)) / max(next - at, 1e-30); // that floats can tell
+            vec4 piece = linearLight(c0, c1, hasPart ? units : 0.0, least, share);
+            float reached = at + share * (next - at);
+            piece = inScene(piece, 0.5 * (at + reached));
             color += through * piece.rgb;
             through *= 1.0 - piece.a;
-            at = share < 1.0 ? at + share * (next - at) : next;
+            at = share < 1.0 ? reached : next;
 #ifdef SCALARS
             scalarAt = share < 1.0 ? mix(scalarAt, scalarNext, share) : scalarNext;
 #endif
             COUNT_SAMPLE
-            more = at < tFar && through > EXACT_ENOUGH && walked < mostTetrahedra;
+            more = at < tFar && through > EXACT_ENOUGH && walked < mostTetrahedra && ++pieces < MOST_PIECES;
             inMesh = at < left.depth || tetrahedron >= 0;
         } while (more && inMesh);
     } while (more);

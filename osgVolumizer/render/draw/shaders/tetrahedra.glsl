@@ -16,10 +16,11 @@ uniform samplerBuffer tetraColors; // straight RGBA
 #ifdef FIELDS
 uniform samplerBuffer tetraFields; // of one vertex after another
 #endif
-uniform int tetraFacesBegin, tetraGridBegin; // words
-uniform int mostTetrahedra;                  // on a ray
-uniform ivec3 tetraGridSize;
-uniform vec3 tetraGridMin, tetraGridScale; // frame; cells of the grid per frame unit
+uniform samplerBuffer tetraBoxes; // of a tree over the outer faces
+uniform int tetraFacesBegin;      // word
+uniform int tetraFaceCount, tetraLeafCount, tetraLeafFaces;
+uniform int mostTetrahedra; // on a ray
+uniform float tetraSize;    // frame
 
 vec3 acrossU, acrossV, alongRay; // frame -> the plane across the ray, and depth
 vec3 walkOrigin, walkDirection;  // the ray
@@ -137,7 +138,7 @@ void beginWalk(vec3 origin, vec3 direction)
     acrossV = normalize(cross(direction, acrossU));
     alongRay = direction / dot(direction, direction);
     // A little beside edges and vertices that the ray would meet exactly, as it does in regular meshes.
-    walkOrigin += (1.3e-7 * acrossU + 0.9e-7 * acrossV) * length(vec3(tetraGridSize) / tetraGridScale);
+    walkOrigin += (1.3e-7 * acrossU + 0.9e-7 * acrossV) * tetraSize;
     tetrahedron = -1;
     walked = 0;
     lastDepth = walkedUntil = -1e30;
@@ -153,52 +154,58 @@ void tryFace(int face, inout float best, inout int bestFace)
     // From outside they are counter-clockwise, and so clockwise along the ray.
     Corner a = cornerOf(word(at)), b = cornerOf(word(at + 2)), c = cornerOf(word(at + 1));
     vec3 w = vec3(crossed(b.across, c.across), crossed(c.across, a.across), crossed(a.across, b.across));
-    if (any(lessThan(w, vec3(0.0))) || !(w.x + w.y + w.z > 0.0)) return;
-    float depth = dot(w / (w.x + w.y + w.z), vec3(a.known.depth, b.known.depth, c.known.depth));
+    float sum = w.x + w.y + w.z;
+    float depth = dot(w, vec3(a.known.depth, b.known.depth, c.known.depth)) / max(sum, 1e-30);
+    bool hit = all(greaterThanEqual(w, vec3(0.0))) && sum > 0.0;
     bool later = depth > lastDepth || (depth == lastDepth && face > lastFace);
     bool first = depth < best || (depth == best && face < bestFace);
-    if (!later || !first) return;
-    best = depth;
-    bestFace = face;
+    if (hit && later && first) {
+        best = depth;
+        bestFace = face;
+    }
 }
 
-// Goes on to the next outer face that the ray comes in by. Cells of the grid on the ray as in Amanatides and Woo, "A
-// fast voxel traversal algorithm for ray tracing", Eurographics 1987.
+// Goes on to the next outer face that the ray comes in by. The tree is complete, so that its nodes need no pointers: after
+// node n and all below it comes n + 1, or the parent's next, and so on up.
 bool enterMesh()
 {
-    vec3 origin = (walkOrigin - tetraGridMin) * tetraGridScale, rate = walkDirection * tetraGridScale;
-    vec2 span = boxSegment(vec3(0.0), vec3(tetraGridSize), origin, rate);
-    float t = max(span.x, lastDepth);
-    if (!(t <= span.y)) return false;
-    ivec3 cell = clamp(ivec3(floor(origin + t * rate)), ivec3(0), tetraGridSize - 1);
-    ivec3 go = ivec3(sign(rate));
-    vec3 inverse = 1.0 / mix(rate, vec3(1e-30), equal(rate, vec3(0.0)));
-    vec3 next = (vec3(cell) + vec3(greaterThan(go, ivec3(0))) - origin) * inverse;
-    next = mix(next, vec3(1e30), equal(go, ivec3(0)));
     float best = 1e30;
-    int bestFace = -1;
-    for (int i = 0; i < 1024; ++i) {
-        int list = tetraGridBegin + cell.x + tetraGridSize.x * (cell.y + tetraGridSize.y * cell.z);
-        int end = int(word(list + 1));
-        for (int at = int(word(list)); at < end; ++at) tryFace(int(word(at)), best, bestFace);
-        float leave = min(next.x, min(next.y, next.z));
-        if (best <= leave) break;
-        bvec3 axis = next.x == leave ? bvec3(true, false, false) : bvec3(false, next.y == leave, next.y != leave);
-        cell += ivec3(axis) * go;
-        next += vec3(axis) * abs(inverse);
-        if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, tetraGridSize))) break;
+    int bestFace = -1, node = 1;
+    for (;;) {
+        int first = 0, end = 0;
+        for (;;) { // on to a leaf that may hold it
+            vec2 span = boxSegment(texelFetch(tetraBoxes, 2 * node).xyz, texelFetch(tetraBoxes, 2 * node + 1).xyz,
+                                   walkOrigin, walkDirection);
+            bool meets = span.x <= span.y && span.y >= lastDepth && span.x <= best;
+            bool leaf = meets && node >= tetraLeafCount;
+            if (leaf) {
+                first = (node - tetraLeafCount) * tetraLeafFaces;
+                end = min(first + tetraLeafFaces, tetraFaceCount);
+            }
+            int next = node + 1;
+            int up = (floatBitsToInt(float(next & -next)) >> 23) - 127; // zeros at the end of it
+            node = meets && !leaf ? 2 * node : next >> up;
+            if (leaf || node == 1) break;
+        }
+        for (int face = first; face < end; ++face) tryFace(face, best, bestFace);
+        if (node == 1) break;
     }
-    if (bestFace < 0) return false;
-    lastDepth = best;
-    lastFace = bestFace;
-    int at = tetraFacesBegin + 4 * bestFace;
-    corner0 = cornerOf(word(at));
-    corner1 = cornerOf(word(at + 2));
-    corner2 = cornerOf(word(at + 1));
-    tetrahedron = int(word(at + 3));
-    left = inFace(corner0, corner1, corner2);
-    hasPart = false;
-    return true;
+    bool found = bestFace >= 0;
+    if (found) {
+        lastDepth = best;
+        lastFace = bestFace;
+        int at = tetraFacesBegin + 4 * bestFace;
+        corner0 = cornerOf(word(at));
+        corner1 = cornerOf(word(at + 2));
+        corner2 = cornerOf(word(at + 1));
+        tetrahedron = int(word(at + 3));
+        left = inFace(corner0, corner1, corner2);
+        hasPart = false;
+#ifdef CELL_SCALARS
+        left.scalar = 0.0;
+#endif
+    }
+    return found;
 }
 
 #if defined(SHADING) && (defined(PLACES) || defined(SCALARS))
@@ -209,7 +216,8 @@ void findGradientFrame(Corner apex)
                       vec3(corner2.across, corner2.known.depth));
     vec3 from = vec3(apex.across, apex.known.depth);
     edges -= mat3(from, from, from);
-    mat3 rows = inverse(transpose(edges)); // edge differences -> gradient along the ray's axes
+    // Edge differences -> gradient along the ray's axes; flat ones have none.
+    mat3 rows = abs(determinant(edges)) > 1e-30 ? inverse(transpose(edges)) : mat3(0.0);
     mat3 axes = mat3(acrossU, acrossV, alongRay);
 #ifdef PLACES
     mat3 places = transpose(mat3(corner0.known.place - apex.known.place, corner1.known.place - apex.known.place,

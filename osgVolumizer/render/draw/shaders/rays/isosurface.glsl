@@ -27,6 +27,11 @@ float rootBetween(vec3 start, vec3 rate, float t0, float f0, float t1, float f1)
     return t1;
 }
 
+#ifdef TETRAHEDRA
+float partEnd = -1e30; // of the last part, and what it ended with: on a face the next one may differ by a rounding, or jump
+bool partBelow;
+#endif
+
 // Where the ray first crosses the iso-value in a part of [tNear, tFar]; far away where it does not.
 float crossing(vec3 origin, vec3 direction, float tNear, float tFar, vec2 part)
 {
@@ -42,6 +47,12 @@ float crossing(vec3 origin, vec3 direction, float tNear, float tFar, vec2 part)
 #endif
     vec3 place = start + i * rate;
     float before = overIso(place), after = before;
+#ifdef TETRAHEDRA
+    bool jumps = tNear == partEnd && partBelow != (overIso(start) < 0.0);
+    partEnd = tFar;
+    partBelow = overIso(start + count * rate) < 0.0;
+    if (jumps && isKept(cutPoint(origin, direction, tNear))) return tNear;
+#endif
     place += rate;
 #ifdef CUT
     for (;;) {
