@@ -11,7 +11,8 @@ float extinctionOf(float opacity) { return opacity > 0.999999 ? 24.0 : -log2(1.0
 float meanExtinction(float a0, float a1, float e0, float e1, float nearby)
 {
     float u0 = max(1.0 - a0, 0.0), u1 = max(1.0 - a1, 0.0), change = u1 - u0;
-    return abs(change) > 0.25 * max(u0, u1) ? 1.442695 + (u1 * e1 - u0 * e0) / change : nearby;
+    bool differ = abs(change) > max(0.25 * max(u0, u1), 2e-6); // by more than roundings
+    return differ ? 1.442695 + (u1 * e1 - u0 * e0) / change : nearby;
 }
 
 // Opacity of bits of extinction, without cancelling the digits of little.
