@@ -109,8 +109,7 @@ void fillTetraSet(const VolumeGeometry& geometry, Record& record, const osgDB::O
     record.add("Tetrahedra", Field::Indices(set->indices), 4);
     if (geometry.getSlackAngle() != 0.0)
         record.add("SlackAngle", Field::Doubles{geometry.getSlackAngle()});
-    if (!geometry.getFieldShader().empty())
-        record.add("FieldShader", geometry.getFieldShader());
+    if (!geometry.getFieldShader().empty()) record.add("FieldShader", geometry.getFieldShader());
     fillScalars(geometry, record);
 }
 
