@@ -24,7 +24,8 @@ osg::ref_ptr<VolumeGeometry> meshOf(int n)
 
 std::shared_ptr<const render::TetraTextures> texturesOf(const VolumeGeometry& geometry)
 {
-    return render::renderData<render::GeometryCache>(geometry)->tetrahedra(geometry, nullptr);
+    const auto cache = render::renderData<render::GeometryCache>(geometry);
+    return cache->tetrahedra(geometry, cache->get(geometry, nullptr));
 }
 
 const float* valuesOf(const osg::TextureBuffer& texture)
