@@ -44,7 +44,7 @@ TEST(TetraTextures, ATetrahedronTakesLessThanHundredBytes)
         const auto textures = texturesOf(*geometry);
         const double bytes = double(textures->bytes()) / double(textures->cellCount);
         std::printf("  %zu tetrahedra: %.1f bytes each\n", textures->cellCount, bytes);
-        EXPECT_LT(bytes, 40.0);
+        EXPECT_LT(bytes, 60.0); // 28 where there are many
     }
 }
 
