@@ -162,6 +162,20 @@ void twoVolumesAndPlane(MixedScene& scene, RenderOptions& options)
     addSlantedPlane(scene);
 }
 
+// The caller adds its truth.
+void adoptMesh(MixedScene& scene, const oracle::TetraMesh& mesh, const Points& points)
+{
+    osg::ref_ptr<VolumeGeometry> geometry = new VolumeGeometry;
+    ASSERT_TRUE(geometry->setTetraSet(oracle::tetraSet(mesh)).ok());
+    ASSERT_TRUE(geometry->setScalarRange(osg::Vec2d(0.0, 1.0)).ok());
+    ASSERT_TRUE(geometry->setScalars({mesh.scalars.begin(), mesh.scalars.end()}).ok());
+    osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
+    appearance->setLookupTable(makeTable(points));
+    appearance->setOpacityUnit(1.0);
+    appearance->addChild(geometry);
+    scene.adopt(*appearance);
+}
+
 // A jittered lattice of tetrahedra with scalars that are linear in space, so that it shows what a
 // box with that field does.
 void addTetrahedra(MixedScene& scene, const osg::Vec3d& corner, double size, const Points& points)
@@ -173,15 +187,7 @@ void addTetrahedra(MixedScene& scene, const osg::Vec3d& corner, double size, con
     const auto field = std::make_shared<oracle::RampField>(
         glm::dvec3(0.3, 0.5, -0.2) / size, 0.3 - glm::dot(glm::dvec3(0.3, 0.5, -0.2), low) / size);
     oracle::sampleField(mesh, *field);
-    osg::ref_ptr<VolumeGeometry> geometry = new VolumeGeometry;
-    ASSERT_TRUE(geometry->setTetraSet(oracle::tetraSet(mesh)).ok());
-    ASSERT_TRUE(geometry->setScalarRange(osg::Vec2d(0.0, 1.0)).ok());
-    ASSERT_TRUE(geometry->setScalars({mesh.scalars.begin(), mesh.scalars.end()}).ok());
-    osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
-    appearance->setLookupTable(makeTable(points));
-    appearance->setOpacityUnit(1.0);
-    appearance->addChild(geometry);
-    scene.adopt(*appearance);
+    adoptMesh(scene, mesh, points);
     scene.truth().volumes.push_back(
         oracle::boxVolume(field, {low, low + size}, oracle::Table(points)));
 }
@@ -207,15 +213,7 @@ void cornerInVolume(MixedScene& scene, RenderOptions&)
         mesh, glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(6, 5, 7)), glm::dvec3(21.0)));
     const auto field = std::make_shared<oracle::RampField>(glm::dvec3(0.01, 0.02, -0.01), 0.3);
     oracle::sampleField(mesh, *field);
-    osg::ref_ptr<VolumeGeometry> geometry = new VolumeGeometry;
-    ASSERT_TRUE(geometry->setTetraSet(oracle::tetraSet(mesh)).ok());
-    ASSERT_TRUE(geometry->setScalarRange(osg::Vec2d(0.0, 1.0)).ok());
-    ASSERT_TRUE(geometry->setScalars({mesh.scalars.begin(), mesh.scalars.end()}).ok());
-    osg::ref_ptr<VolumeAppearance> appearance = new VolumeAppearance;
-    appearance->setLookupTable(makeTable(WARM));
-    appearance->setOpacityUnit(1.0);
-    appearance->addChild(geometry);
-    scene.adopt(*appearance);
+    adoptMesh(scene, mesh, WARM);
     for (const auto& cell : mesh.cells) {
         oracle::Volume part;
         part.region = oracle::tetraRegion({mesh.corner(cell, 0), mesh.corner(cell, 1),
