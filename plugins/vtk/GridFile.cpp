@@ -2,6 +2,7 @@
 
 #include "CheckedGridReader.h"
 #include "ErrorKeeper.h"
+#include "LegacyArrays.h"
 #include "LegacyCells.h"
 
 #include <osgVolumizer/core/RegularFile.h>
@@ -57,14 +58,7 @@ Result<GridFile> readLegacy(const std::string& path, ErrorKeeper& errors)
     reader->SetFileName(path.c_str());
     if (!reader->IsFileUnstructuredGrid())
         return unreadable(path, "not a VTK file with DATASET UNSTRUCTURED_GRID");
-    // Else the first of each kind, and the others not at all.
-    reader->ReadAllScalarsOn();
-    reader->ReadAllVectorsOn();
-    reader->ReadAllNormalsOn();
-    reader->ReadAllTensorsOn();
-    reader->ReadAllColorScalarsOn();
-    reader->ReadAllTCoordsOn();
-    reader->ReadAllFieldsOn();
+    readAllArrays(*reader);
     std::ifstream stream(path, std::ios::binary);
     std::stringstream content;
     content << stream.rdbuf();

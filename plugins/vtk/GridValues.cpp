@@ -57,10 +57,7 @@ Status GridValues::choose(std::optional<int> channel)
 {
     const int components = _array->GetNumberOfComponents(), type = _array->GetDataType();
     if (components < 1) return {ErrorCode::SIZE_MISMATCH, "has no components"};
-    if (channel && *channel >= components)
-        return {ErrorCode::INDEX_OUT_OF_RANGE, "has no channel " + std::to_string(*channel) +
-                                                   ", but " + std::to_string(components) +
-                                                   ", from 0 on"};
+    if (Status s = vtkimage::checkChannel(channel, components); !s.ok()) return s;
     _component = channel.value_or(0);
     if (channel || components == 1) return {};
     if (type == VTK_UNSIGNED_CHAR && (components == 3 || components == 4)) {

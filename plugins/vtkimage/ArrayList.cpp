@@ -59,5 +59,12 @@ Result<ArrayInfo> ArrayList::choose(const std::string& name) const
                                                 (arrays.size() > MOST_NAMES ? ", ..." : ""));
 }
 
+Status checkChannel(std::optional<int> channel, int components)
+{
+    if (!channel || *channel < components) return {};
+    return {ErrorCode::INDEX_OUT_OF_RANGE, "has no channel " + std::to_string(*channel) + ", but " +
+                                               std::to_string(components) + ", from 0 on"};
+}
+
 } // namespace vtkimage
 } // namespace osgVolumizer

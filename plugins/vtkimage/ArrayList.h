@@ -2,6 +2,7 @@
 
 #include <osgVolumizer/core/Status.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct ArrayList
     /// Cells whose name points have, too, are "cells:...".
     std::string nameOf(const ArrayInfo& array) const;
 };
+
+/// INDEX_OUT_OF_RANGE where an array has no such channel; what is said goes after its name.
+Status checkChannel(std::optional<int> channel, int components);
 
 } // namespace vtkimage
 } // namespace osgVolumizer

@@ -1,6 +1,7 @@
 #include "DataSetFile.h"
 
 #include "../vtk/ErrorKeeper.h"
+#include "../vtk/LegacyArrays.h"
 
 #include <vtkDataArraySelection.h>
 #include <vtkDataCompressor.h>
@@ -88,13 +89,7 @@ DataSet readLegacy(const std::string& path, vtk::ErrorKeeper& errors)
     errors.watch(*reader);
     errors.watch(*reader->GetExecutive());
     reader->SetFileName(path.c_str());
-    reader->ReadAllScalarsOn();
-    reader->ReadAllVectorsOn();
-    reader->ReadAllNormalsOn();
-    reader->ReadAllTensorsOn();
-    reader->ReadAllColorScalarsOn();
-    reader->ReadAllTCoordsOn();
-    reader->ReadAllFieldsOn();
+    vtk::readAllArrays(*reader);
     errors.run(*reader);
     return reader->GetOutput();
 }

@@ -1,5 +1,7 @@
 #include "Samples.h"
 
+#include "ArrayList.h"
+
 #include <osgVolumizer/io/Brightness.h>
 #include <osgVolumizer/io/NarrowestType.h>
 
@@ -98,10 +100,7 @@ Status Samples::choose(std::optional<int> channel)
 {
     const int components = _array->GetNumberOfComponents();
     const bool bytes = _array->GetDataType() == VTK_UNSIGNED_CHAR;
-    if (channel && *channel >= components)
-        return {ErrorCode::INDEX_OUT_OF_RANGE, "has no channel " + std::to_string(*channel) +
-                                                   ", but " + std::to_string(components) +
-                                                   ", from 0 on"};
+    if (Status s = checkChannel(channel, components); !s.ok()) return s;
     _component = channel.value_or(0);
     if (channel || components == 1) return {};
     if (bytes && (components == 3 || components == 4)) {

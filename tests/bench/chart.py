@@ -2,13 +2,12 @@
 """chart.py CSV FOLDER [wall|cpu]: draws FOLDER/chart.svg and writes FOLDER/chart.md from what
 osgVolumizerChart measured. Times are medians over rounds; ratios are medians of each round's ratio."""
 
-import csv
 import math
 import statistics
 import sys
 
 from charting import (PANEL_WIDTH, Panel, comments, document, draw_axes, draw_curve, draw_legend, draw_title,
-                      number, text)
+                      number, read, text)
 
 # Colour, marker, dash: told apart by either of the first two, also by people who see few colours.
 STYLES = {
@@ -24,16 +23,9 @@ COLUMNS = 3
 CELL_WIDTH, CELL_HEIGHT, LEFT, TOP = 395, 345, 64, 62  # of a panel with its titles; of the first one
 
 
-def read(file_name, clock):
-    """{scene: (description, {renderer: [(step, rmse, maximum, bias, [ms of each round])]})}, by step."""
-    scenes = {}
-    with open(file_name, newline="") as file:
-        for row in csv.DictReader(line for line in file if not line.startswith("#")):
-            curves = scenes.setdefault(row["scene"], (row["description"], {}))[1]
-            rounds = [float(t) for t in row[clock + "_ms_rounds"].split(";")]
-            curves.setdefault(row["renderer"], []).append(
-                (float(row["step_voxel"]), float(row["rmse"]), float(row["maximum"]),
-                 float(row["bias"]), rounds))
+def read_sorted(file_name, clock):
+    """What charting.read() gives, by step."""
+    scenes = read(file_name, clock, "step_voxel", float)
     for _, curves in scenes.values():
         for points in curves.values():
             points.sort(reverse=True)
@@ -162,7 +154,7 @@ def svg(scenes, clock, run):
 
 def main():
     clock = sys.argv[3] if len(sys.argv) > 3 else "wall"
-    scenes, run = read(sys.argv[1], clock), comments(sys.argv[1])
+    scenes, run = read_sorted(sys.argv[1], clock), comments(sys.argv[1])
     for name, content in (("chart.svg", svg(scenes, clock, run)), ("chart.md", markdown(scenes, clock))):
         with open(f"{sys.argv[2]}/{name}", "w") as file:
             file.write(content)

@@ -1,5 +1,6 @@
 """What chart.py and mesh_chart.py share: pieces of SVG, and the comments that a run begins with."""
 
+import csv
 import math
 
 PANEL_WIDTH, PANEL_HEIGHT = 310, 250
@@ -36,6 +37,18 @@ class Panel:
                 value = factor * 10.0 ** decade
                 if low <= math.log10(value) <= high:
                     yield value
+
+
+def read(file_name, clock, column, kind):
+    """{scene: (description, {renderer: [(kind(column), rmse, maximum, bias, [ms of each round])]})}."""
+    scenes = {}
+    with open(file_name, newline="") as file:
+        for row in csv.DictReader(line for line in file if not line.startswith("#")):
+            curves = scenes.setdefault(row["scene"], (row["description"], {}))[1]
+            rounds = [float(t) for t in row[clock + "_ms_rounds"].split(";")]
+            curves.setdefault(row["renderer"], []).append(
+                (kind(row[column]), float(row["rmse"]), float(row["maximum"]), float(row["bias"]), rounds))
+    return scenes
 
 
 def escaped(words):

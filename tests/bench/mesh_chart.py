@@ -2,11 +2,10 @@
 """mesh_chart.py CSV FOLDER [wall|cpu]: draws FOLDER/mesh.svg and writes FOLDER/mesh.md from what
 osgVolumizerMeshChart measured. Times are medians over rounds; ratios are medians of each round's ratio."""
 
-import csv
 import statistics
 import sys
 
-from charting import (Panel, comments, document, draw_axes, draw_curve, draw_legend, draw_title, number)
+from charting import (Panel, comments, document, draw_axes, draw_curve, draw_legend, draw_title, number, read)
 
 # Colour, marker, dash: told apart by either of the first two, also by people who see few colours.
 STYLES = {
@@ -18,15 +17,9 @@ LIBRARY = "osgVolumizer"
 CELL_WIDTH, CELL_HEIGHT, LEFT, TOP = 395, 345, 64, 62  # of a panel with its titles; of the first one
 
 
-def read(file_name, clock):
-    """{scene: (description, {renderer: [(tetrahedra, rmse, maximum, bias, [ms of each round])]})}, by size."""
-    scenes = {}
-    with open(file_name, newline="") as file:
-        for row in csv.DictReader(line for line in file if not line.startswith("#")):
-            curves = scenes.setdefault(row["scene"], (row["description"], {}))[1]
-            rounds = [float(t) for t in row[clock + "_ms_rounds"].split(";")]
-            curves.setdefault(row["renderer"], []).append(
-                (int(row["tetrahedra"]), float(row["rmse"]), float(row["maximum"]), float(row["bias"]), rounds))
+def read_sorted(file_name, clock):
+    """What charting.read() gives, by size."""
+    scenes = read(file_name, clock, "tetrahedra", int)
     for _, curves in scenes.values():
         for points in curves.values():
             points.sort()
@@ -88,7 +81,7 @@ def svg(scenes, clock, run):
 
 def main():
     clock = sys.argv[3] if len(sys.argv) > 3 else "wall"
-    scenes, run = read(sys.argv[1], clock), comments(sys.argv[1])
+    scenes, run = read_sorted(sys.argv[1], clock), comments(sys.argv[1])
     for name, content in (("mesh.svg", svg(scenes, clock, run)), ("mesh.md", markdown(scenes, clock))):
         with open(f"{sys.argv[2]}/{name}", "w") as file:
             file.write(content)

@@ -173,12 +173,12 @@ public:
     // A node of so many leaves.
     void build(std::size_t node, std::size_t begin, std::size_t end, std::size_t leaves)
     {
+        if (begin >= end) return; // far away, as all boxes are at first
         Box3d box;
         for (std::size_t f = begin; f < end; ++f) {
             box.expand(_faces[f].box.min);
             box.expand(_faces[f].box.max);
         }
-        if (begin >= end) return; // far away, as all boxes are at first
         _graph.boxes[2 * node] = glm::vec3(box.min - _margin);
         _graph.boxes[2 * node + 1] = glm::vec3(box.max + _margin);
         if (leaves == 1) return;

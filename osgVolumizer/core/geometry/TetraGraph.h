@@ -35,8 +35,8 @@ struct OSGVOLUMIZER_CORE_EXPORT TetraGraph
     std::size_t cellCount = 0, faceCount = 0;
     /// The lowest and the highest corner of each node, a little outwards, one after another; both
     /// far away where there are no faces. Node 1 is the root, node n has children 2n and 2n + 1;
-    /// nothing is at 0. The last `leafCount` nodes
-    /// are leaves, with `leafFaces` outer faces each, in their order, but for the last ones.
+    /// nothing is at 0. The last `leafCount` nodes are leaves, with `leafFaces` outer faces each,
+    /// in their order, but for the last ones.
     std::vector<glm::vec3> boxes;
     std::size_t leafCount = 1, leafFaces = 1;
     /// Of each tetrahedron, the number that it has in the set.

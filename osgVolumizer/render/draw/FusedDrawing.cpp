@@ -19,7 +19,7 @@ namespace render {
 
 namespace {
 
-constexpr int MOST_TETRAHEDRA = 1 << 16; // on one ray
+constexpr int MOST_TETRAHEDRON_STEPS = 1 << 16; // of one member
 
 constexpr unsigned FIRST_MEMBER_UNIT = UNIT_CELLS; // before are those of the march
 
@@ -135,7 +135,7 @@ bool setMembers(const FusedDrawing& drawing, const osg::Program::PerContextProgr
         mostSteps +=
             members[i].part->look->maximumSteps + 2 * (members[i].part->features.paintCount + 1);
         // Steps end with tetrahedra, too.
-        if (members[i].part->features.tetrahedra) mostSteps += MOST_TETRAHEDRA;
+        if (members[i].part->features.tetrahedra) mostSteps += MOST_TETRAHEDRON_STEPS;
     }
     for (unsigned unit = FIRST_MEMBER_UNIT; unit < units.taken(); ++unit)
         drawing.renderInfo.getState()->haveAppliedTextureAttribute(unit,

@@ -132,10 +132,10 @@ GLint largestBufferTexture()
 // That a ray may meet, in a mesh that is as odd as can be.
 constexpr std::size_t MOST_TETRAHEDRA = 1 << 20;
 
-// False, reported once, where the card refuses it: what it is for is not drawn.
-bool applyBuffer(osg::State& state, osg::TextureBuffer& buffer, unsigned unit)
+// \param most texels of a buffer texture. False, reported once, where the card refuses it: what it
+// is for is not drawn.
+bool applyBuffer(osg::State& state, osg::TextureBuffer& buffer, unsigned unit, GLint most)
 {
-    const GLint most = largestBufferTexture();
     const int units = textureUnitsOf(state);
     const bool fits =
         buffer.getImage()->s() <= most && (units == 0 || static_cast<int>(unit) < units);
@@ -163,6 +163,7 @@ bool setTetrahedra(osg::State& state, const Uniforms& uniforms, const VolumeLook
                    unsigned unit)
 {
     const TetraTextures& t = *look.tetrahedra;
+    const GLint most = largestBufferTexture();
     const std::pair<const char*, osg::TextureBuffer*> buffers[] = {
         {"tetraGraph", t.graph.get()},
         {"tetraPositions", t.positions.get()},
@@ -173,7 +174,7 @@ bool setTetrahedra(osg::State& state, const Uniforms& uniforms, const VolumeLook
         {"tetraColors", look.features.vertexColors ? t.colors.get() : nullptr}};
     for (const auto& buffer : buffers) {
         if (!buffer.second) continue;
-        if (!applyBuffer(state, *buffer.second, unit)) return false;
+        if (!applyBuffer(state, *buffer.second, unit, most)) return false;
         uniforms.set(buffer.first, static_cast<int>(unit++));
     }
     uniforms.set("tetraFacesBegin", t.facesBegin);
