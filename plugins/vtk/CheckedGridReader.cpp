@@ -3,6 +3,11 @@
 #include "FaceStream.h"
 
 #include <vtkXMLDataElement.h>
+#include <vtkXMLDataParser.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 namespace osgVolumizer {
 namespace vtk {
@@ -12,6 +17,22 @@ CheckedGridReader* CheckedGridReader::New()
     auto* reader = new CheckedGridReader;
     reader->InitializeObjectBase();
     return reader;
+}
+
+// VTK makes room before it reads.
+int CheckedGridReader::ReadPiece(vtkXMLDataElement* piece)
+{
+    if (!Superclass::ReadPiece(piece)) return 0;
+    constexpr double MOST_UNPACKED = 10000.0; // bytes that a compressor makes of one
+    std::error_code failed;
+    const auto bytes = static_cast<double>(std::filesystem::file_size(FileName, failed));
+    const double most = bytes * (XMLParser->GetCompressor() ? MOST_UNPACKED : 1.0);
+    const auto count =
+        static_cast<double>(std::max(NumberOfPoints[Piece], GetNumberOfCellsInPiece(Piece)));
+    if (!failed && count <= most) return 1;
+    vtkErrorMacro("there is less in the file than the points and cells that it says it has");
+    DataError = 1;
+    return 0;
 }
 
 int CheckedGridReader::ReadPieceData()

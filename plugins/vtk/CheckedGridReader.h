@@ -8,7 +8,8 @@ namespace osgVolumizer {
 namespace vtk {
 
 /// VTK's reader of .vtu files, which walks over the faces of polyhedra as far as they say that they
-/// reach: first checks that this is where their array ends. Where not, it fails with an error.
+/// reach: first checks that this is where their array ends, and that the file is long enough for
+/// the points and cells that it says it has. Where not, it fails with an error.
 class CheckedGridReader final : public vtkXMLUnstructuredGridReader
 {
 public:
@@ -16,6 +17,7 @@ public:
     static CheckedGridReader* New();
 
 protected:
+    int ReadPiece(vtkXMLDataElement* piece) override;
     int ReadPieceData() override;
 
 private:
