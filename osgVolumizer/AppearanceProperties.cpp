@@ -136,7 +136,7 @@ Property accumulationBits()
 const char* const TECHNIQUES[] = {"AUTOMATIC", "SLICES", "SLABS"};
 const char* const INTERPOLATIONS[] = {"NEAREST", "LINEAR", "CUBIC"};
 const char* const LOOKUPS[] = {"AUTOMATIC_LOOKUP", "AFTER_INTERPOLATION", "BEFORE_INTERPOLATION",
-                               "PREINTEGRATED"};
+                               "PREINTEGRATED", "CELL_BY_CELL"};
 const char* const MODES[] = {"VIEWPORT_ALIGNED", "AXIS_ALIGNED", "SPHERICAL"};
 const char* const RULES[] = {"ABSORB", "PAINT"};
 const char* const GRADIENTS[] = {"ON_THE_FLY", "PRECOMPUTED"};

@@ -44,7 +44,7 @@ public:
         voxels = voxelsIn(appearance, *prepared);
         const TableChoice choice =
             voxels ? chooseTable(appearance, *prepared, leastPrecision()) : TableChoice();
-        return render::settingsInForce(appearance, *prepared, choice.table.integrals,
+        return render::settingsInForce(appearance, *prepared, choice.table.lookup(),
                                        choice.exactFiltering);
     }
 };

@@ -19,7 +19,7 @@ namespace render {
 
 namespace {
 
-constexpr int MOST_TETRAHEDRON_STEPS = 1 << 16; // of one member
+constexpr int MOST_OTHER_STEPS = 1 << 16; // of one member
 
 constexpr unsigned FIRST_MEMBER_UNIT = UNIT_CELLS; // before are those of the march
 
@@ -128,19 +128,24 @@ bool setMembers(const FusedDrawing& drawing, const osg::Program::PerContextProgr
     const std::vector<FusedMember>& members = drawing.part.fused->members;
     Units units(drawing.resources.limits.textureUnits);
     int mostSteps = 0;
+    double opaqueEnough = 1.0;
     for (std::size_t i = 0; i < members.size(); ++i) {
         const Uniforms uniforms(gl, program, memberSuffix(i));
         if (!setMarched(drawing, members[i], uniforms, units)) return false;
+        opaqueEnough = std::min(opaqueEnough, members[i].part->look->opaqueEnough);
         // What it is cut into, and its paints cut besides.
         mostSteps +=
             members[i].part->look->maximumSteps + 2 * (members[i].part->features.paintCount + 1);
-        // Steps end with tetrahedra, too.
-        if (members[i].part->features.tetrahedra) mostSteps += MOST_TETRAHEDRON_STEPS;
+        // Steps end with tetrahedra, and pieces, too.
+        if (members[i].part->features.tetrahedra || members[i].part->features.cells)
+            mostSteps += MOST_OTHER_STEPS;
     }
     for (unsigned unit = FIRST_MEMBER_UNIT; unit < units.taken(); ++unit)
         drawing.renderInfo.getState()->haveAppliedTextureAttribute(unit,
                                                                    osg::StateAttribute::TEXTURE);
-    Uniforms(gl, program).set("mostSteps", static_cast<float>(mostSteps));
+    const Uniforms uniforms(gl, program);
+    uniforms.set("mostSteps", static_cast<float>(mostSteps));
+    uniforms.set("opaqueEnough", static_cast<float>(opaqueEnough));
     return true;
 }
 

@@ -41,7 +41,8 @@ std::string memberCode(const ProgramFeatures& features, bool inOrder)
 {
     const std::string code = volumeSource(features);
     const bool closedForm = inOrder && features.isExact();
-    const std::string rays = closedForm ? "" : rayShaderSource(features.rayFunction);
+    const std::string rays =
+        closedForm ? "" : rayShaderSource(features.rayFunction) + shaderSource("cells.glsl");
     if (inOrder)
         return code + rays + shaderSource(features.tetrahedra ? "mesh.glsl" : "brick.glsl");
     return code + shaderSource("member.glsl") + rays;
@@ -100,7 +101,7 @@ std::string marchSource(const std::vector<ProgramFeatures>& members, bool inOrde
 {
     std::string source;
     std::vector<Names> names;
-    bool surfaces = false;
+    bool surfaces = false, pieces = false;
     for (std::size_t i = 0; i < members.size(); ++i) {
         const ProgramFeatures features = memberFeatures(members[i], inOrder);
         const std::string defines = features.defines() + (inOrder ? "" : "#define MEMBER\n");
@@ -109,9 +110,11 @@ std::string marchSource(const std::vector<ProgramFeatures>& members, bool inOrde
         source += undefined(defines) + defines +
                   withSuffix(code, names.back().suffix, names.back().names) + undefined(defines);
         surfaces = surfaces || rowOf(features.rayFunction).showsIsoValueOnly;
+        pieces = pieces || (features.cells && !features.tetrahedra);
     }
     if (inOrder) std::reverse(names.begin(), names.end());
     if (surfaces) source += "#define SURFACES\n";
+    if (pieces && !inOrder) source += "#define PIECES\n";
     return source + forEach(shaderSource(inOrder ? "inorder.glsl" : "fused.glsl"), names);
 }
 

@@ -31,6 +31,8 @@ constexpr Flag FLAGS[] = {
     {&ProgramFlags::before, "BEFORE"},
     {&ProgramFlags::preIntegrated, "PREINTEGRATED"},
     {&ProgramFlags::shortRuns, "SHORT_RUNS"},
+    {&ProgramFlags::cells, "CELLS"},
+    {&ProgramFlags::corners, "CORNERS"},
     {&ProgramFlags::smoothTable, "SMOOTH_TABLE"},
     {&ProgramFlags::shading, "SHADING"},
     {&ProgramFlags::gradientTexture, "GRADIENT_TEXTURE"},

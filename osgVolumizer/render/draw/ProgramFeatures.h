@@ -26,6 +26,8 @@ struct ProgramFlags
     bool before = false;                 ///< look samples up, then interpolate
     bool preIntegrated = false;          ///< look runs of values up
     bool shortRuns = false;              ///< look short runs up as single values
+    bool cells = false;                  ///< split rays at faces of cells and corners of the table
+    bool corners = false;                ///< the table has some within its range
     bool smoothTable = false;            ///< interpolate between entries
     bool shading = false;
     bool gradientTexture = false; ///< brick textures hold gradients besides values

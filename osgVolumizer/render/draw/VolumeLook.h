@@ -33,6 +33,7 @@ struct VolumeLook
     double step = 1.0;                    ///< eye units of depth between samples
     double voxelsPerSample = 1.0;         ///< along the view axis
     int maximumSteps = 1;
+    double opaqueEnough = 3e-5;                 ///< what is left of the light where rays end
     glm::vec3 regionMin{0.0f}, regionMax{0.0f}; ///< slabs: box of the whole volume (frame)
     /// Half-spaces (frame) that cut: clip planes, those of a VolumeCut, and slabs by those of the
     /// region.

@@ -22,6 +22,11 @@ void setTable(const Uniforms& uniforms, const VolumeLook& look)
 {
     uniforms.set("valueToEntry", look.valueToEntry);
     uniforms.set("lastEntry", static_cast<float>(look.table.count - 1));
+    if (look.features.cells) {
+        uniforms.set("intervals", look.table.intervals->intervals);
+        uniforms.set("longestPiece",
+                     look.voxelsPerSample < 0.999 ? static_cast<float>(look.step) : 1e30f);
+    }
     if (!look.features.preIntegrated) return;
     uniforms.set("tableLow", look.table.low);
     uniforms.set("tableHigh", look.table.high);
@@ -84,6 +89,7 @@ void setSegment(const Uniforms& uniforms, const VolumePart& part)
     const VolumeLook& look = *part.look;
     uniforms.set("stepsPerDepth", static_cast<float>(1.0 / part.step));
     uniforms.set("maximumSteps", static_cast<float>(look.maximumSteps));
+    uniforms.set("opaqueEnough", static_cast<float>(look.opaqueEnough));
     if (part.features.splitDepth) uniforms.set("inFrontOfSplit", part.inFrontOfSplit ? 1 : 0);
     if (part.features.ranked) uniforms.set("rank", part.rank);
     uniforms.set("regionMin", look.regionMin);

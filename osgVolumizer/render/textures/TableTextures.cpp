@@ -93,10 +93,34 @@ void countShown(const std::vector<glm::vec4>& texels, TableTexture& table)
     table.shownGaps = std::move(gaps);
 }
 
+// Kinks that are not sharper are left to Gauss's rule: see core::makeIntervalTable().
+constexpr double SHARP = 1.0;
+
+std::shared_ptr<TableTexture> makeIntervals(const LookupTable& table, const osg::Vec2d& range)
+{
+    auto made = std::make_shared<TableTexture>();
+    made->function = table.getNormalizedFunction(range);
+    auto intervals =
+        std::make_shared<core::IntervalTable>(core::makeIntervalTable(*made->function, SHARP));
+    made->count = 2;
+    auto shown = std::make_shared<std::vector<int>>(1, 0);
+    for (int i = 0; i < intervals->intervals; ++i)
+        shown->push_back(shown->back() + !intervals->showsNothing(i));
+    made->shownEntries = std::move(shown);
+    made->texture = makeTexture(intervals->texels);
+    made->intervals = std::move(intervals);
+    return made;
+}
+
 std::shared_ptr<const TableTexture> makeTable(const LookupTable& table, const osg::Vec2d& range,
                                               VolumeAppearance::Lookup lookup)
 {
     static std::atomic<unsigned> nextId{1};
+    if (lookup == VolumeAppearance::CELL_BY_CELL) {
+        auto made = makeIntervals(table, range);
+        made->id = nextId++;
+        return made;
+    }
     auto made = std::make_shared<TableTexture>();
     TableTexture& result = *made;
     result.function = table.getNormalizedFunction(range);
@@ -210,6 +234,13 @@ private:
 
 bool TableTexture::shows(double lowFraction, double highFraction) const
 {
+    if (intervals) {
+        if (!(lowFraction <= highFraction)) return false;
+        constexpr double ROUNDING = 1e-6; // of the shader's floats
+        const auto first = static_cast<std::size_t>(intervals->find(lowFraction - ROUNDING));
+        const auto end = static_cast<std::size_t>(intervals->find(highFraction + ROUNDING)) + 1;
+        return (*shownEntries)[end] > (*shownEntries)[first];
+    }
     // The shader's floats are off by less than a hundredth of an entry.
     const double last = count - 1.0;
     if (!(lowFraction <= highFraction)) return false;
@@ -224,7 +255,7 @@ bool TableTexture::shows(double lowFraction, double highFraction) const
 
 core::ExtinctionTable TableTexture::entries() const
 {
-    if (!texture) return {};
+    if (!texture || intervals) return {};
     return {reinterpret_cast<const glm::vec4*>(texture->getImage()->data()), count, integrals};
 }
 

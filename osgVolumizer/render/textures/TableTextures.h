@@ -3,6 +3,7 @@
 #include "../../VolumeAppearance.h"
 #include "../../core/RecencyCache.h"
 #include "../../core/transfer/ExtinctionTable.h"
+#include "../../core/transfer/IntervalTable.h"
 
 #include <osg/TextureBuffer>
 
@@ -16,22 +17,31 @@ namespace osgVolumizer {
 namespace render {
 
 /// A core::ExtinctionTable as a texture buffer, read at the nearest entry, which on some devices
-/// costs a third of what a filtered texture does.
+/// costs a third of what a filtered texture does; or a core::IntervalTable.
 struct TableTexture
 {
     osg::ref_ptr<osg::TextureBuffer> texture;
     bool integrals = false;
-    bool shortRuns = false;          ///< integrals are too large for differences over few entries
-    int count = 1;                   ///< entries
+    bool shortRuns = false; ///< integrals are too large for differences over few entries
+    int count = 1;          ///< entries; of intervals 2, so that an entry is a fraction
+    std::shared_ptr<const core::IntervalTable> intervals; ///< null where it is one of entries
     glm::vec4 low{0.0f}, high{0.0f}; ///< extinction times colour, extinction: beyond the ends
     /// Numbers of entries, and of gaps between entries (integrals only), that show something before
-    /// each.
+    /// each. Intervals: of those that show something.
     std::shared_ptr<const std::vector<int>> shownEntries, shownGaps;
     LookupTable::Function function; ///< of the fraction of the range
+    /// How it is read.
+    VolumeAppearance::Lookup lookup() const
+    {
+        return intervals   ? VolumeAppearance::CELL_BY_CELL
+               : integrals ? VolumeAppearance::PREINTEGRATED
+                           : VolumeAppearance::AFTER_INTERPOLATION;
+    }
     /// Whether anything is shown of values between two fractions of the range, low <= high, the way
     /// the table is read: at entries, or over runs of them.
     bool shows(double lowFraction, double highFraction) const;
-    /// The texels in memory, for as long as there is the texture; empty where that is null.
+    /// The texels in memory, for as long as there is the texture; empty where that is null, and of
+    /// intervals.
     core::ExtinctionTable entries() const;
     unsigned id = 0; ///< differs for every texture ever made
 };

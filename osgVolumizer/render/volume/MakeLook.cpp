@@ -94,10 +94,24 @@ void setInterpolation(const VolumeInstance& volume, const TableTexture& table,
                      (appearance.getExactFiltering() || volume.exactFiltering);
     features.before = looksUpBefore(appearance, features.rayFunction, interpolation);
     features.preIntegrated = table.integrals;
+    features.cells = table.intervals != nullptr;
+    features.corners = features.cells && table.intervals->intervals > 3;
     features.shortRuns = table.integrals && table.shortRuns;
     // At a period of a voxel and more what the nearest entry is off by does not count.
-    features.smoothTable =
-        !table.integrals && (appearance.getExactFiltering() || voxelsPerSample < 0.999);
+    features.smoothTable = !table.integrals && !table.intervals &&
+                           (appearance.getExactFiltering() || voxelsPerSample < 0.999);
+}
+
+// Of a tolerance that is asked for a small part; else so little that it does not stand out among
+// errors of the period, which are of second order.
+double opaqueEnough(const VolumeAppearance& appearance, const VolumeLook& look)
+{
+    constexpr double OF_A_VOXEL = 3e-5, LEAST = 1e-7, SHARE = 0.02;
+    const double tolerance = appearance.getErrorTolerance();
+    if (tolerance > 0.0) return std::max(SHARE * tolerance, LEAST);
+    if (look.features.cells || look.features.isExact()) return 1e-6;
+    const double period = std::min(look.voxelsPerSample, 1.0);
+    return std::max(OF_A_VOXEL * period * period, LEAST);
 }
 
 void setFeatures(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
@@ -190,6 +204,7 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     if (visitor.getState()) features.filterBits = filterBitsOf(*visitor.getState());
     features.blendsSteps = volume.steps.blended;
     if (features.voxels) setInterpolation(volume, table, look->voxelsPerSample, features, reasons);
+    look->opaqueEnough = opaqueEnough(appearance, *look);
     reportReasons(appearance, reasons);
     if (features.slab) {
         look->regionMin = glm::vec3(prepared.regionBox.min);

@@ -76,15 +76,19 @@ void explainTechnique(const VolumeAppearance& appearance, const PreparedGeometry
 }
 
 void explainLookup(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
-                   bool integrals, VolumeAppearance::Settings& settings)
+                   VolumeAppearance::Lookup table, VolumeAppearance::Settings& settings)
 {
     const auto asked = appearance.getLookup();
-    settings.lookup = integrals ? VolumeAppearance::PREINTEGRATED
-                      : looksUpBefore(appearance, settings.rayFunction, settings.interpolation)
-                          ? VolumeAppearance::BEFORE_INTERPOLATION
-                          : VolumeAppearance::AFTER_INTERPOLATION;
+    settings.lookup =
+        table == VolumeAppearance::AFTER_INTERPOLATION &&
+                looksUpBefore(appearance, settings.rayFunction, settings.interpolation)
+            ? VolumeAppearance::BEFORE_INTERPOLATION
+            : table;
     if (settings.lookup == asked) return;
-    if (integrals)
+    if (table == VolumeAppearance::CELL_BY_CELL)
+        settings.reasons.push_back("steps would not keep the error tolerance, or not as fast; "
+                                   "lookup is cell by cell");
+    else if (table == VolumeAppearance::PREINTEGRATED)
         settings.reasons.push_back("samples would miss jumps or peaks of the table; lookup is "
                                    "preintegrated");
     else if (asked == VolumeAppearance::AUTOMATIC_LOOKUP &&
@@ -210,10 +214,16 @@ VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
     // deformed volume do not know.
     Reasons ofRayFunction;
     const bool rays = prepared.voxelFrame || usesSlabs(appearance, prepared);
-    const bool runs = rays && appearance.getVoxels()->getComponents() == 1 &&
-                      appearance.getInterpolation() != VolumeAppearance::NEAREST &&
-                      rowOf(usedRayFunction(appearance, prepared, ofRayFunction)).integratesLight;
-    return runs ? appearance.getLookup() : VolumeAppearance::AFTER_INTERPOLATION;
+    const bool integrated =
+        appearance.getVoxels()->getComponents() == 1 &&
+        rowOf(usedRayFunction(appearance, prepared, ofRayFunction)).integratesLight;
+    const auto interpolation = usedInterpolation(appearance, ofRayFunction);
+    const bool suits = appearance.getLookup() == VolumeAppearance::CELL_BY_CELL
+                           ? usesSlabs(appearance, prepared) &&
+                                 interpolation != VolumeAppearance::CUBIC &&
+                                 appearance.getCombineRule() != VolumeAppearance::PAINT
+                           : rays && interpolation != VolumeAppearance::NEAREST;
+    return integrated && suits ? appearance.getLookup() : VolumeAppearance::AFTER_INTERPOLATION;
 }
 
 bool looksUpBefore(const VolumeAppearance& appearance, VolumeAppearance::RayFunction function,
@@ -244,8 +254,8 @@ bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry
 }
 
 VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
-                                           const PreparedGeometry& prepared, bool integrals,
-                                           bool exactFiltering)
+                                           const PreparedGeometry& prepared,
+                                           VolumeAppearance::Lookup table, bool exactFiltering)
 {
     VolumeAppearance::Settings settings;
     Reasons& reasons = settings.reasons;
@@ -255,7 +265,7 @@ VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
     settings.shading = usesShading(appearance, prepared, settings.rayFunction, reasons);
     explainSampling(appearance, prepared, reasons);
     if (!voxelsIn(appearance, prepared)) return settings;
-    explainLookup(appearance, prepared, integrals, settings);
+    explainLookup(appearance, prepared, table, settings);
     if (appearance.getErrorTolerance() > 0.0) (void)canKeepTolerance(appearance, prepared, reasons);
     settings.exactFiltering = settings.interpolation == VolumeAppearance::LINEAR &&
                               (appearance.getExactFiltering() || exactFiltering);

@@ -47,11 +47,11 @@ bool looksUpBefore(const VolumeAppearance& appearance, VolumeAppearance::RayFunc
 bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
                       Reasons& reasons);
 
-/// All of them together. `integrals`: whether the table that is used holds them.
+/// All of them together. `table`: how that which is used is read.
 /// `exactFiltering`: whether an error tolerance needs that.
 VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
-                                           const PreparedGeometry& prepared, bool integrals,
-                                           bool exactFiltering);
+                                           const PreparedGeometry& prepared,
+                                           VolumeAppearance::Lookup table, bool exactFiltering);
 
 /// Reports each reason once in the life of the process.
 void reportReasons(const VolumeAppearance& appearance, const Reasons& reasons);

@@ -24,6 +24,7 @@ public:
         if (_options.brickSize) name += " bricks " + std::to_string(_options.brickSize);
         if (!_options.joined) name += " apart";
         if (_options.tolerance) name += " tolerance";
+        if (_options.cells) name += " cell by cell";
         return name;
     }
 
@@ -99,6 +100,7 @@ private:
         appearance->setLookupTable(table);
         appearance->setTechnique(_options.slabs ? VolumeAppearance::SLABS
                                                 : VolumeAppearance::SLICES);
+        if (_options.cells) appearance->setLookup(VolumeAppearance::CELL_BY_CELL);
         appearance->addChild(VolumeGeometry::createBox(*voxels));
         appearance->setShading(_scene.shaded);
         root.addChild(appearance);

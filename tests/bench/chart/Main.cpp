@@ -18,7 +18,7 @@ namespace {
 
 const char* const usage = R"(Usage: osgVolumizerChart [options]
   --scenes A,B,..     default all
-  --renderers A,B,..  of slabs slices slabs:BRICK slices:BRICK apart:BRICK (bricks with a texture
+  --renderers A,B,..  of slabs cells slices slabs:BRICK slices:BRICK apart:BRICK (bricks with a texture
                       each) tolerance bare bareintegral fixed raytraced multipass vtkgpu vtkcpu;
                       default all that were built, bricks and tolerance aside
   --steps A,B,..      sample distances in voxels, default 8,4,2,1,0.5,0.25,0.125; for
@@ -35,8 +35,8 @@ const char* const usage = R"(Usage: osgVolumizerChart [options]
 struct Arguments
 {
     std::vector<std::string> scenes;
-    std::vector<std::string> renderers{"slabs",     "slices",    "bare",   "bareintegral", "fixed",
-                                       "raytraced", "multipass", "vtkgpu", "vtkcpu"};
+    std::vector<std::string> renderers{"slabs", "cells",     "slices",    "bare",   "bareintegral",
+                                       "fixed", "raytraced", "multipass", "vtkgpu", "vtkcpu"};
     MeasureOptions measure;
     std::string csv;
     bool profile = false;

@@ -14,11 +14,13 @@ RendererPtr makeRenderer(const std::string& name)
     const std::size_t colon = std::min(name.find(':'), name.size());
     const std::string kind = name.substr(0, colon);
     const std::string detail = colon < name.size() ? name.substr(colon + 1) : "";
-    if (kind == "slabs" || kind == "slices" || kind == "apart" || kind == "tolerance") {
+    if (kind == "slabs" || kind == "slices" || kind == "apart" || kind == "tolerance" ||
+        kind == "cells") {
         LibraryOptions options;
         options.slabs = kind != "slices";
         options.joined = kind != "apart";
         options.tolerance = kind == "tolerance";
+        options.cells = kind == "cells";
         options.brickSize = detail.empty() ? 0 : std::stoi(detail);
         return makeLibraryRenderer(options);
     }

@@ -32,6 +32,7 @@ struct LibraryOptions
     bool joined = true; ///< bricks may share a texture
     /// What setStep() sets is not a step but the error asked for, in thousandths.
     bool tolerance = false;
+    bool cells = false; ///< lookup is cell by cell
 };
 RendererPtr makeLibraryRenderer(const LibraryOptions& options);
 /// A fragment shader that marches through the box in one pass, without a scene graph: the

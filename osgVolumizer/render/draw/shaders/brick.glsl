@@ -24,7 +24,7 @@ vec4 light(float tNear, float tFar)
     if (!(max(tNear, shown.x) < min(tFar, shown.y))) return vec4(0.0);
 #ifdef PAINTED
     vec4 sum = vec4(0.0);
-    for (float t = tNear; t < tFar && sum.a < 1.0 - OPAQUE_ENOUGH;) {
+    for (float t = tNear; t < tFar && sum.a < 1.0 - opaqueEnough;) {
         float next = nextCut(origin, direction, t, tFar);
         sum += (1.0 - sum.a) * march(origin, direction, t, next, shown);
         t = next;

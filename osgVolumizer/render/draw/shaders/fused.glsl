@@ -1,12 +1,13 @@
 // Several volumes in one march. Depth along the view is common to their rays, each has its own frame. All are sampled
 // at the middle of the same steps, which end where any volume begins or ends; extinctions add, and colours are weighted
-// by extinction. So constant volumes come out exact, others to second order, and none is first.
+// by extinction. So constant volumes come out exact, others to second order, and none is first. Where one of them is
+// marched cell by cell, steps end with its pieces, too, and are sampled at the points of Gauss's rule.
 // "#pragma each" stands before what is done for each of them.
 
 uniform float mostSteps;
 
 // No ray of a volume by itself is off by more than that; here their errors add.
-#define TOGETHER_ENOUGH (0.25 * OPAQUE_ENOUGH)
+#define TOGETHER_ENOUGH (0.25 * opaqueEnough)
 
 #ifdef SURFACES
 float surface; // where the nearest isosurface is; far away where none is
@@ -35,11 +36,20 @@ vec4 lightBetween(float tNear, float tFar)
         float next = end;
 #pragma each cutStep(t, next);
         float middle = 0.5 * (t + next), dt = next - t;
+#ifdef PIECES
+        vec4 first = vec4(0.0), second = vec4(0.0);
+#pragma each addPoints(t, next, first, second);
+        vec4 piece = lightOfPiece(vec4(first.rgb / max(first.a, 1e-30), first.a),
+                                  vec4(second.rgb / max(second.a, 1e-30), second.a), dt);
+        color += through * piece.rgb;
+        through -= through * piece.a;
+#else
         vec4 sum = vec4(0.0);
 #pragma each addLight(middle, dt, sum);
         float behind = through * exp2(-sum.a * dt);
         color += (through - behind) * sum.rgb / max(sum.a, 1e-30);
         through = behind;
+#endif
         t = next;
     } while (t < end && --left > 0.0 && through > TOGETHER_ENOUGH);
 #ifdef SURFACES

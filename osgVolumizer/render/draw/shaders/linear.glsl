@@ -2,8 +2,6 @@
 // 1e-6. Emission is weighted by what it passes on its way out, integrated by parts; extinction and colour of each step
 // are parabolas through its ends and its middle, whose integrals Simpson's rule has exactly.
 
-#define EXACT_ENOUGH 1e-6 // what is let through
-
 // Extinction in bits per opacity unit. What is opaque but for a rounding is opaque.
 float extinctionOf(float opacity) { return opacity > 0.999999 ? 24.0 : -log2(1.0 - opacity); }
 
@@ -13,13 +11,6 @@ float meanExtinction(float a0, float a1, float e0, float e1, float nearby)
     float u0 = max(1.0 - a0, 0.0), u1 = max(1.0 - a1, 0.0), change = u1 - u0;
     bool differ = abs(change) > max(0.25 * max(u0, u1), 2e-6); // by more than roundings
     return differ ? 1.442695 + (u1 * e1 - u0 * e0) / change : nearby;
-}
-
-// Opacity of bits of extinction, without cancelling the digits of little.
-float opacityOf(float bits)
-{
-    float depth = 0.6931471806 * bits;
-    return depth < 0.02 ? depth * (1.0 - depth * (0.5 - depth * (0.16666667 - depth * 0.041666668))) : 1.0 - exp2(-bits);
 }
 
 // Light of a piece of a ray, a length in opacity units of it or its first step if that is too much for one; the share of

@@ -8,8 +8,8 @@ vec2 shown;   // the part of that which may show something
 vec3 placeOrigin, placeRate; // the ray as places
 float unitsPerDepth;
 
-// Finds the member's part of the ray. Steps are counted from where the volume begins, whatever of it shows.
-void findPart(float tNear, float tFar, inout vec2 all)
+// Finds the part of the ray that may show something, of that in the volume's region.
+vec2 findRegion(float tNear, float tFar, inout vec2 all)
 {
     pixelRay(memberOrigin, memberDirection);
     vec2 region = regionSegment(memberOrigin, memberDirection);
@@ -24,6 +24,18 @@ void findPart(float tNear, float tFar, inout vec2 all)
 #endif
     if (!(shown.x < shown.y)) shown = vec2(1e30, -1e30);
     all = vec2(min(all.x, shown.x), max(all.y, shown.y));
+    unitsPerDepth = length(frameToUnits * memberDirection);
+#ifdef SHADING
+    findEyeRay();
+#endif
+    return region;
+}
+
+#if !defined(CELLS) || defined(TETRAHEDRA) // else see cells.glsl
+// Finds the member's part of the ray. Steps are counted from where the volume begins, whatever of it shows.
+void findPart(float tNear, float tFar, inout vec2 all)
+{
+    vec2 region = findRegion(tNear, tFar, all);
     period = 1.0 / stepsPerDepth;
 #ifdef TETRAHEDRA
     segment = shown;
@@ -37,10 +49,6 @@ void findPart(float tNear, float tFar, inout vec2 all)
 #endif
     placeOrigin = placeOf(memberOrigin);
     placeRate = VOXEL_LENGTH * memberDirection;
-#endif
-    unitsPerDepth = length(frameToUnits * memberDirection);
-#ifdef SHADING
-    findEyeRay();
 #endif
 }
 
@@ -71,6 +79,7 @@ void cutStep(float t, inout float end)
     end = nextCut(memberOrigin, memberDirection, t, end);
 #endif
 }
+#endif
 #endif
 
 // Adds a sample: extinction times colour, and extinction, per unit of depth.

@@ -142,7 +142,7 @@ vec4 light(float tNear, float tFar)
             scalarAt = share < 1.0 ? mix(scalarAt, scalarNext, share) : scalarNext;
 #endif
             COUNT_SAMPLE
-            more = at < tFar && through > EXACT_ENOUGH && walked < mostTetrahedra && ++pieces < MOST_PIECES;
+            more = at < tFar && through > opaqueEnough && walked < mostTetrahedra && ++pieces < MOST_PIECES;
             inMesh = at < left.depth || tetrahedron >= 0;
         } while (more && inMesh);
     } while (more);

@@ -88,7 +88,7 @@ void compositeSurfaces(float enter, float leave)
     fragColor = vec4(0.0);
     float through = 1.0, t = enter;
     vec4 depths;
-    for (int i = 0; i <= SLOTS && through > OPAQUE_ENOUGH; ++i) {
+    for (int i = 0; i <= SLOTS && through > opaqueEnough; ++i) {
         if (i < SLOTS && (i & 3) == 0) depths = texelFetch(sortedSlots, ivec3(pixel, i >> 2), 0);
         float depth = i < SLOTS ? depths[i & 3] : 2.0;
         float end = depth <= 1.0 ? min(rayAt(depth), leave) : leave;

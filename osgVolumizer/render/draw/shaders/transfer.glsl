@@ -1,7 +1,42 @@
 // Colour and extinction of a point or a piece of a ray, shared by slices and slabs.
 
 #ifdef VOXELS
-#ifndef RGBA
+#ifdef CELLS
+uniform samplerBuffer lookupTable; // see core/transfer/IntervalTable.h
+uniform vec2 valueToEntry;         // texel -> fraction of the range
+uniform int intervals;
+
+// The interval of the table that the value is in.
+int interval;
+vec4 inInterval; // first and last value, first entry, entries per value
+
+void takeInterval(int i)
+{
+    interval = i;
+    inInterval = texelFetch(lookupTable, i);
+}
+
+void findInterval(float value)
+{
+    int low = 0, high = intervals - 1;
+    for (int i = 0; i < 24 && low < high; ++i) {
+        int middle = (low + high + 1) / 2;
+        bool below = value < texelFetch(lookupTable, middle).r;
+        low = below ? low : middle;
+        high = below ? middle - 1 : high;
+    }
+    takeInterval(low);
+}
+
+// Colour and extinction of a value, which is held to the interval.
+vec4 inIntervalAt(float value)
+{
+    float entry = inInterval.z + max(clamp(value, inInterval.x, inInterval.y) - inInterval.x, 0.0) * inInterval.w;
+    int i = int(entry);
+    return mix(texelFetch(lookupTable, i), texelFetch(lookupTable, i + 1), entry - float(i));
+}
+
+#elif !defined(RGBA)
 uniform samplerBuffer lookupTable; // r, g, b, extinction in bits (-log2 of transmittance) per opacity unit
 uniform vec2 valueToEntry;         // texel -> entry of the table
 uniform float lastEntry;
@@ -23,6 +58,10 @@ vec4 classifyTexel(TEXEL texel)
 {
 #ifdef RGBA
     return vec4(texel.rgb, -log2(max(1.0 - texel.a, 5.9604645e-8)));
+#elif defined(CELLS)
+    float fraction = texel * valueToEntry.x + valueToEntry.y;
+    findInterval(fraction);
+    return inIntervalAt(fraction);
 #else
     return entryAt(texel * valueToEntry.x + valueToEntry.y);
 #endif

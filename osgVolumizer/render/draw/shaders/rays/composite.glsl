@@ -2,7 +2,7 @@
 
 #define EMPTY_RAY vec4(0.0)
 #define JOIN_RAY(front, behind) (front + (1.0 - front.a) * behind)
-#define RAY_DONE(light) (light.a >= 1.0 - OPAQUE_ENOUGH)
+#define RAY_DONE(light) (light.a >= 1.0 - opaqueEnough)
 
 #ifdef TETRAHEDRA
 // What vertices make of a colour and extinction.
@@ -46,6 +46,9 @@ void addLight(float t, float dt, inout vec4 sum)
 }
 float surfaceOnRay() { return 1e30; }
 void addSurface(float t, inout vec3 color, inout float through) {}
+
+#elif defined(CELLS)
+// See cells.glsl.
 
 #elif defined(MEMBER) && defined(PREINTEGRATED)
 float knownDepth = -1e30; // where the entry and the integral of the last step's end are known
@@ -146,7 +149,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
     float depth = min(stop, tNear + (i + 1.0) * dt) - t; // of the first step, which may be cut
     place += rate * depth;
     t += depth;
-    for (int steps = int(last - i); steps > 0 && light.a > OPAQUE_ENOUGH; --steps) {
+    for (int steps = int(last - i); steps > 0 && light.a > opaqueEnough; --steps) {
         addRun(origin, direction, t, place, depth, unitsPerDepth, entry, integral, light);
         depth = min(dt, stop - t); // of the last one, which may be cut too
         t += depth;
@@ -203,7 +206,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
         color += (transmittance - next) * c.rgb;
         transmittance = next;
         place += rate;
-    } while (--steps > 0 && transmittance > OPAQUE_ENOUGH);
+    } while (--steps > 0 && transmittance > opaqueEnough);
     return vec4(color, 1.0 - transmittance);
 }
 
