@@ -2,8 +2,8 @@
 # Time against error of osgVolumizer and its peers: writes build/chart/chart.csv, chart.svg and chart.md
 # (see charting.sh). Arguments go to the program, e.g.
 #   tests/bench/chart.sh --scenes smooth,head --rounds 3
-# A full run takes about three quarters of an hour on two cores, half of it for references, which are
-# kept in build/chart/chart. The CPUs should have nothing else to do.
+# A full run takes about an hour on two cores, half of it for references, which are kept in
+# build/chart/chart. The CPUs should have nothing else to do.
 set -u -o pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/charting.sh"
 install_missing $CHART_VOLPACK_PACKAGES || echo "No VolPack: it is left out." >&2

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iostream>
+#include <limits>
 
 namespace osgVolumizer {
 namespace bench {
@@ -178,9 +179,12 @@ Status VolPackRenderer::setStep(double stepVoxel)
     if (stepVoxel != 1.0 && stepVoxel != 0.5 && stepVoxel != 0.25)
         return Status(ErrorCode::NOT_SUPPORTED,
                       "is given voxels once, twice and four times as fine, for steps to 0.25");
-    _context.reset(vpCreateContext());
     const glm::ivec3 size =
         1 + (_scene.volumes.front().size - 1) * int(std::lround(1.0 / stepVoxel));
+    const double bytes = double(sizeof(Voxel)) * size.x * size.y * size.z;
+    if (bytes > std::numeric_limits<int>::max())
+        return Status(ErrorCode::TOO_LARGE, "has no more than 2^31 bytes of voxels");
+    _context.reset(vpCreateContext());
     vpContext* context = _context.get();
     vpSetVolumeSize(context, size.x, size.y, size.z);
     setView(size, stepVoxel);
