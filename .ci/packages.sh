@@ -19,6 +19,8 @@ HEADLESS_DEMO_PACKAGES="xvfb imagemagick"
 # What the charts (tests/bench/charting.sh) need on top: GoogleTest, since benchmarks are among the
 # tests, the peers in OpenSceneGraph, and a display for VTK.
 CHART_PACKAGES="libgtest-dev libgl1-mesa-dri openscenegraph xvfb xauth python3"
+# A peer in the chart of volumes; it goes without.
+CHART_VOLPACK_PACKAGES="libvolpack1-dev"
 # Readers of .vtk and .vtu files, and peers in the charts; all goes without it.
 VTK_PACKAGES="libvtk9-dev"
 # The reader of TIFF with depth, and of other rare ones; all goes without it.
@@ -31,7 +33,7 @@ ITK_PACKAGES="libinsighttoolkit5-dev"
 ITK_TEST_PACKAGES="python3-pydicom python3-nibabel"
 # The reader of NetCDF and Zarr; all goes without it.
 GDAL_PACKAGES="libgdal-dev"
-# The reader of OpenVDB grids; all goes without it.
+# The reader of OpenVDB grids, and a peer in the chart of volumes; all goes without it.
 #   libboost-dev    OpenVDB's headers include some of it, and its package does not say so
 OPENVDB_PACKAGES="libopenvdb-dev libboost-dev"
 

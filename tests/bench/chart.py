@@ -15,7 +15,8 @@ STYLES = {
     "bare march": ("#000000", "plus", "4 3"), "bare march integral": ("#808080", "cross", "4 3"),
     "osgVolume FixedFunction": ("#8a3ab9", "up", ""), "osgVolume RayTraced": ("#0050c0", "down", ""),
     "osgVolume Multipass": ("#00a0a0", "diamond", ""), "VTK GPU": ("#5f8a00", "hollow", ""),
-    "VTK CPU": ("#8b4513", "bar", ""),
+    "VTK CPU": ("#8b4513", "bar", ""), "VolPack": ("#d6409f", "square", "2 2"),
+    "OpenVDB VolumeRender": ("#005f5f", "up", "8 3"),
 }
 LIBRARY = "osgVolumizer slabs"
 TARGETS = (4e-3, 1e-3)
@@ -148,7 +149,7 @@ def svg(scenes, clock, run):
     last = cells - 1
     parts += draw_legend(LEFT - 20 + (last % COLUMNS) * CELL_WIDTH, TOP + 6 + (last // COLUMNS) * CELL_HEIGHT,
                          {n: STYLES[n] for n in names}, notes)
-    title = "Time against error of volume renderers in OpenSceneGraph and VTK, scene by scene"
+    title = "Time against error of volume renderers, scene by scene"
     return document(width, height, title, run, parts)
 
 

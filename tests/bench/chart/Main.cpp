@@ -18,12 +18,13 @@ namespace {
 
 const char* const usage = R"(Usage: osgVolumizerChart [options]
   --scenes A,B,..     default all
-  --renderers A,B,..  of slabs cells slices slabs:BRICK slices:BRICK apart:BRICK (bricks with a texture
-                      each) tolerance bare bareintegral fixed raytraced multipass vtkgpu vtkcpu;
-                      default all that were built, bricks and tolerance aside
+  --renderers A,B,..  of slabs cells slices slabs:BRICK slices:BRICK apart:BRICK (bricks with a
+                      texture each) tolerance bare bareintegral fixed raytraced multipass vtkgpu vtkcpu
+                      volpack openvdb; default all that were built, bricks and tolerance aside
   --steps A,B,..      sample distances in voxels, default 8,4,2,1,0.5,0.25,0.125; for
                       `tolerance`: the errors asked for, in thousandths. A renderer whose frames
-                      take more than half a second is not measured at finer ones
+                      take more than half a second is not measured at finer ones, nor any at
+                      those that it does not have (volpack: others than 1, 0.5 and 0.25)
   --rounds N          default 5
   --csv FILE          writes the points
   --pictures          writes PNG and EXR of every renderer at the finest step to build/pictures
@@ -35,8 +36,9 @@ const char* const usage = R"(Usage: osgVolumizerChart [options]
 struct Arguments
 {
     std::vector<std::string> scenes;
-    std::vector<std::string> renderers{"slabs", "cells",     "slices",    "bare",   "bareintegral",
-                                       "fixed", "raytraced", "multipass", "vtkgpu", "vtkcpu"};
+    std::vector<std::string> renderers{"slabs",        "cells",  "slices",    "bare",
+                                       "bareintegral", "fixed",  "raytraced", "multipass",
+                                       "vtkgpu",       "vtkcpu", "volpack",   "openvdb"};
     MeasureOptions measure;
     std::string csv;
     bool profile = false;

@@ -19,11 +19,16 @@ constexpr double SHADED_REFERENCE_STEP = 1.0 / 16.0;
 constexpr double PATIENCE_MILLISECONDS = 500.0;
 
 // What only the first frame after a change costs is not counted.
-void drawAt(Renderer& renderer, double step)
+Status drawAt(Renderer& renderer, double step)
 {
     const Status status = renderer.setStep(step);
-    if (!status.ok()) std::cerr << renderer.name() << ": " << status.text << "\n";
-    renderer.frame();
+    if (status.ok()) renderer.frame();
+    return status;
+}
+
+void printRefusal(const ChartScene& scene, const Renderer& renderer, const Status& status)
+{
+    std::cerr << scene.name << ", " << renderer.name() << ": " << status.text << "\n";
 }
 
 // A renderer that could be opened, and what its pictures are compared with.
@@ -39,14 +44,14 @@ std::vector<Entry> openAll(const ChartScene& scene, const Reference& reference,
 {
     std::vector<Entry> entries;
     for (const RendererPtr& renderer : renderers) {
-        const Status status = renderer->open(scene);
+        Status status = renderer->open(scene);
+        if (status.ok() && scene.shaded) status = drawAt(*renderer, SHADED_REFERENCE_STEP);
         if (!status.ok()) {
-            std::cerr << scene.name << ", " << renderer->name() << ": " << status.text << "\n";
+            printRefusal(scene, *renderer, status);
             continue;
         }
         Entry entry{renderer.get(), reference.picture, reference.mask};
         if (scene.shaded) {
-            drawAt(*renderer, SHADED_REFERENCE_STEP);
             entry.picture = renderer->picture();
             entry.mask = support::coveredPixels(entry.picture);
         }
@@ -72,7 +77,11 @@ std::vector<Point> measure(const ChartScene& scene, const Reference& reference,
                 const double step = options.steps[s];
                 Renderer& renderer = *entry.renderer;
                 Point& point = points[s * entries.size() + e];
-                drawAt(renderer, step);
+                const Status status = drawAt(renderer, step);
+                if (!status.ok()) {
+                    if (round == 0) printRefusal(scene, renderer, status);
+                    continue;
+                }
                 if (round == 0) {
                     const support::FloatImage picture = renderer.picture();
                     point.scene = scene.name;

@@ -32,6 +32,12 @@ RendererPtr makeRenderer(const std::string& name)
 #ifdef OSGVOLUMIZER_CHART_VTK
     if (kind == "vtkgpu" || kind == "vtkcpu") return makeVtkRenderer(kind == "vtkgpu");
 #endif
+#ifdef OSGVOLUMIZER_CHART_VOLPACK
+    if (kind == "volpack") return makeVolPackRenderer();
+#endif
+#ifdef OSGVOLUMIZER_CHART_OPENVDB
+    if (kind == "openvdb") return makeOpenVdbRenderer();
+#endif
     return nullptr;
 }
 

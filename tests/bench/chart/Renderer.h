@@ -15,7 +15,7 @@ class Renderer : public FrameRenderer
 public:
     /// Makes everything that does not depend on the step. Not ok: this renderer cannot draw it.
     virtual Status open(const ChartScene& scene) = 0;
-    /// Distance between samples along the view, in voxels.
+    /// Distance between samples along the view, in voxels. Not ok: it cannot draw at this one.
     virtual Status setStep(double stepVoxel) = 0;
     /// Where the time of the last frame went, milliseconds by name; empty where that is not known.
     virtual std::map<std::string, double> split() { return {}; }
@@ -47,6 +47,10 @@ enum class OsgVolumeTechnique
     MULTIPASS
 };
 RendererPtr makeOsgVolumeRenderer(OsgVolumeTechnique technique);
+
+/// VolPack, and OpenVDB's VolumeRender; only where their libraries were found.
+RendererPtr makeVolPackRenderer();
+RendererPtr makeOpenVdbRenderer();
 
 /// By the name of the command line; null for an unknown one.
 RendererPtr makeRenderer(const std::string& name);

@@ -168,7 +168,7 @@ std::vector<Entry> entries()
                                         blob, smoothTable(0.3)));
         };
     };
-    const TablePoints smooth = smoothTable(0.06);
+    const TablePoints smooth = smoothTable(0.06), grey = greyTable(0.06);
     return {
         {"smooth", "smooth table, float voxels fill the box", field(f, smooth)},
         {"smooth-8bit", "the same, 8-bit voxels", field(VoxelType::UINT8, smooth)},
@@ -179,6 +179,8 @@ std::vector<Entry> entries()
         {"blob", "blob with empty borders", blobOf(SIZE, 0.0)},
         {"blob-tight", "the same blob in a tight box of 50^3 samples", blobOf(50, 39.0)},
         {"peak", "sharp peak in the table", field(f, peakTable())},
+        {"grey", "one colour, extinction proportional to value", field(f, grey)},
+        {"grey-ortho", "the same, orthographic", field(f, grey, false)},
         {"opaque", "near-opaque", field(f, smoothTable(0.9))},
         {"two-volumes", "two volumes that overlap", overlapping},
         {"spheres", "three translucent spheres inside", withSpheres},

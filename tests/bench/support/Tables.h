@@ -23,6 +23,16 @@ inline TablePoints smoothTable(double opacity)
     return points;
 }
 
+/// One colour, and an extinction proportional to the value, to millionths of the largest: what is
+/// looked up before interpolation is then what is looked up after it.
+inline TablePoints greyTable(double extinction)
+{
+    TablePoints points;
+    for (int i = 0; i <= 64; ++i)
+        points.push_back({i / 64.0, {0.8, 0.8, 0.8, 1.0 - std::exp(-extinction * i / 64.0)}});
+    return points;
+}
+
 /// A transparent background with one opaque peak, 1/32 of the range wide.
 inline TablePoints peakTable()
 {
