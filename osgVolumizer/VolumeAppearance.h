@@ -202,12 +202,13 @@ public:
     int getMaximumSamples() const { return _sampling.maximumSamples; }
     const core::SamplingParameters& getSamplingParameters() const { return _sampling; }
 
-    /// The root mean square error, in units of full intensity, that sampling may make in a picture;
-    /// then period and kind of table are chosen by marching some random rays through the data, once
-    /// for each change of table or data (50 ms for a smooth table, up to 500 for a sharp one, which
-    /// needs more and finer rays), and the sampling period is not used. One choice for all views.
-    /// With jumps in the table that is the error over many views: in one of few pixels those whose
-    /// rays graze a jump may have more.
+    /// The root mean square error, in units of full intensity, that sampling may make in a picture:
+    /// the cheapest of equal steps, with the table or its integrals, and of CELL_BY_CELL is chosen
+    /// by what each makes of some random rays through the data, and the sampling period is not
+    /// used. One choice for all views. Kept from 1e-2 to 1e-5 with voxels of any kind; where not,
+    /// the least is taken, and said once: see Settings::expectedError. A frame spends some 10 ms on
+    /// it after a change of data or table; the rest is done by another thread, and meanwhile, for
+    /// tenths of a second, frames are as fine as any data need.
     /// Composited slabs of voxels of one component, without shading. 0 (default): as the period
     /// says.
     ReportedStatus setErrorTolerance(double rootMeanSquare);
@@ -260,6 +261,12 @@ public:
         /// Filtering is exact: asked for, or needed for an error tolerance. Whether it is needed is
         /// measured in each context; here it is said for the least precise one that there is.
         bool exactFiltering = false;
+        /// Root mean square error that is expected of an error tolerance, more than that where it
+        /// cannot be kept; 0: none was asked for, or it is not known yet.
+        double expectedError = 0.0;
+        /// A cheaper sampling is being looked for than the one in force, which keeps the tolerance:
+        /// frames, and calls of this, go on with it.
+        bool refining = false;
         /// A sentence for each that differs from what was asked for.
         std::vector<std::string> reasons;
     };

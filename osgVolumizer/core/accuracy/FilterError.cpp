@@ -1,6 +1,8 @@
 #include "FilterError.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -30,25 +32,25 @@ double steepness(const FractionField& field, const Box3d& box, const glm::dvec3&
     return sum;
 }
 
-// How far colour and extinction change about a value for a small change of it: over entries as far
-// apart at least as their distance, since between them the table is flat.
-glm::dvec4 change(const ExtinctionTable& table, double value, double by)
+// How far colour and extinction change about a value for a small change of it: over a distance at
+// least, so that random places find jumps.
+glm::dvec4 change(const IntervalTable& table, double value, double by)
 {
-    const double step = std::max(by, 1.0 / std::max(table.count - 1, 1));
-    const glm::dvec4 middle = table.at(value);
-    const glm::dvec4 up = glm::abs(table.at(value + step) - middle);
-    const glm::dvec4 down = glm::abs(table.at(value - step) - middle);
+    constexpr double LEAST = 1.0 / 16384.0;
+    const auto at = [&](double v) { return table.at(table.find(v), v); };
+    const double step = std::max(by, LEAST);
+    const glm::dvec4 middle = at(value);
+    const glm::dvec4 up = glm::abs(at(value + step) - middle);
+    const glm::dvec4 down = glm::abs(at(value - step) - middle);
     return glm::max(up, down) * (by / step);
 }
 
 } // namespace
 
-double filterError(const FractionField& field, const PeriodQuestion& question, double filterWeight)
+double filterError(const FractionField& field, const Box3d& box, const glm::dmat3& voxelToUnits,
+                   const IntervalTable& table, double filterWeight)
 {
-    const Box3d& box = question.box;
     if (box.empty() || !(filterWeight > 0.0)) return 0.0;
-    const ExtinctionTable& table =
-        question.midpoints.empty() ? question.integrals : question.midpoints;
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     double colors = 0.0, extinctions = 0.0;
@@ -60,9 +62,9 @@ double filterError(const FractionField& field, const PeriodQuestion& question, d
         const glm::dvec4 d = change(table, value, filterWeight * steepness(field, box, p));
         extinctions += d.a * d.a;
         const double color = std::max({d.r, d.g, d.b});
-        if (table.at(value).a > 0.0) colors += color * color;
+        if (table.at(table.find(value), value).a > 0.0) colors += color * color;
     }
-    const double length = glm::length(question.voxelToUnits * (box.max - box.min));
+    const double length = glm::length(voxelToUnits * (box.max - box.min));
     return std::sqrt(colors / PLACES) + LN2 * length * std::sqrt(extinctions / PLACES);
 }
 

@@ -1,6 +1,11 @@
 #pragma once
 
-#include "PeriodChoice.h"
+#include "../Export.h"
+#include "../geometry/Box.h"
+#include "../transfer/IntervalTable.h"
+#include "CellRay.h"
+
+#include <glm/mat3x3.hpp>
 
 namespace osgVolumizer {
 namespace core {
@@ -10,8 +15,11 @@ namespace core {
 /// of them values are off by that times their differences along the three axes, all of one sign;
 /// the table makes changes of colour and extinction of that; a change of colour shows once, one of
 /// extinction over the length of the box's diagonal.
-OSGVOLUMIZER_CORE_EXPORT double filterError(const FractionField& field,
-                                            const PeriodQuestion& question, double filterWeight);
+/// \param box voxel frame; of what shows something
+/// \param voxelToUnits a vector of the voxel frame -> opacity units
+OSGVOLUMIZER_CORE_EXPORT double filterError(const FractionField& field, const Box3d& box,
+                                            const glm::dmat3& voxelToUnits,
+                                            const IntervalTable& table, double filterWeight);
 
 } // namespace core
 } // namespace osgVolumizer

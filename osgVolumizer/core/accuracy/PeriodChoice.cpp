@@ -4,22 +4,24 @@
 #include "RandomRays.h"
 
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace osgVolumizer {
 namespace core {
 
 namespace {
 
-// More rays are added where they disagree about the error by more than this: standard deviation of
+// More rays are wanted where they disagree about the error by more than this: standard deviation of
 // the mean square, relative.
 constexpr double DOUBT = 0.15;
-// What is taken for the truth has so many samples a voxel; that is enough for periods down to
-// COARSE_TRUTH voxels, and four times as many for all.
-constexpr double SAMPLES_PER_VOXEL = 8.0, COARSE_TRUTH = 0.5;
+// Or where fewer than this show something.
+constexpr std::size_t FEWEST_SHOWN = 400;
+constexpr double VISIBLE = 1e-3; // opacity of a ray that shows something
+constexpr double TRUTH = 0.125;  // longest piece of what is taken for the truth, voxels
 constexpr double LONGEST = 16.0, SHORTEST = 0.0625; // periods, voxels
 // Errors of few rays, and of steps that count along the view axis and not along the ray, are off by
 // this.
@@ -27,100 +29,201 @@ constexpr double SAFETY = 1.35;
 // The part of a tolerance that filtering may take. Squares of errors add, so that it is within what
 // SAFETY leaves.
 constexpr double FILTER_SHARE = 0.25;
-// What a step with integrals costs, in steps without.
-constexpr double INTEGRAL_COST = 1.25;
+// What a step with integrals costs, in steps without; and a piece, where the table has corners
+// within its range, and where not.
+constexpr double INTEGRAL_COST = 1.25, CORNER_COST = 6.4, PIECE_COST = 1.9;
+// Floats and the texture units of a card, which take no part in this.
+constexpr double LEAST_ERROR = 2e-6;
 
-// Mean of the rays' squared errors, and its standard deviation.
-struct MeanSquare
+// A ray that shows something, and what.
+struct ShownRay
 {
-    double mean = 0.0, deviation = 0.0;
+    const CellRay* ray;
+    glm::dvec4 light; ///< premultiplied
 };
 
-MeanSquare errorOf(const RandomRays& set, const ExtinctionTable& table, double periodVoxel)
+// Finds errors of rules.
+class Judge
 {
-    const std::vector<RandomRays::Ray>& rays = set.rays();
-    const double periodIntervals = periodVoxel * set.samplesPerVoxel();
-    double sum = 0.0, squares = 0.0;
-    for (const RandomRays::Ray& ray : rays) {
-        const glm::dvec4 d = ray.samples.integrate(table, periodIntervals) - ray.light;
-        const double square = 0.25 * glm::dot(d, d);
-        sum += square;
-        squares += square * square;
+public:
+    Judge(const PeriodQuestion& question, const std::vector<CellRay>& rays) : _question(question)
+    {
+        for (const CellRay& ray : rays) {
+            const double rough = ray.integrate(*question.table, LONGEST, VISIBLE).a;
+            if (!(rough > VISIBLE)) continue;
+            _rays.push_back({&ray, ray.integrate(*question.table, TRUTH, 0.0)});
+        }
+        _doubts = _rays.size() < FEWEST_SHOWN;
     }
-    if (rays.empty()) return {};
-    const double count = static_cast<double>(rays.size()), mean = sum / count;
-    return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / count)};
-}
 
-// Root mean square error, at the upper end of what so few rays leave uncertain: where a few rays
-// have all the error, as with jumps in the table, that is much more than what they happen to show.
-double upperError(RandomRays& rays, const ExtinctionTable& table, double periodVoxel,
-                  double tolerance)
+    bool isEmpty() const { return _rays.empty(); }
+    // Whether errors that decided were uncertain.
+    bool doubts() const { return _doubts; }
+
+    // Root mean square error, at the upper end of what so few rays leave uncertain: where a few
+    // rays have all the error, as with jumps in the table, that is much more than what they happen
+    // to show.
+    double error(RayRule rule, double periodVoxel)
+    {
+        double sum = 0.0, squares = 0.0;
+        for (const ShownRay& shown : _rays) {
+            const glm::dvec4 d = integrate(*shown.ray, rule, periodVoxel) - shown.light;
+            const double square = 0.25 * glm::dot(d, d);
+            sum += square;
+            squares += square * square;
+        }
+        if (_rays.empty()) return 0.0;
+        const auto count = static_cast<double>(_rays.size());
+        const double mean = sum / count;
+        const double deviation = std::sqrt(std::max(squares / count - mean * mean, 0.0) / count);
+        const double upper = SAFETY * std::sqrt(mean + 2.0 * deviation) + LEAST_ERROR;
+        if (deviation > DOUBT * mean && upper > _question.tolerance &&
+            SAFETY * std::sqrt(mean) < _question.tolerance)
+            _doubts = true;
+        return upper;
+    }
+
+    // Pieces per voxel of a ray.
+    double pieces(double longestVoxel) const
+    {
+        std::size_t count = 0;
+        double length = 0.0;
+        const std::size_t stride = _rays.size() / 100 + 1;
+        for (std::size_t i = 0; i < _rays.size(); i += stride) {
+            count += _rays[i].ray->pieceCount(*_question.table, longestVoxel);
+            length += _rays[i].ray->lengthVoxel();
+        }
+        return static_cast<double>(count) / std::max(length, 1e-9);
+    }
+
+private:
+    glm::dvec4 integrate(const CellRay& ray, RayRule rule, double periodVoxel) const
+    {
+        const double enough = _question.opaqueEnough;
+        switch (rule) {
+        case RayRule::MIDPOINTS:
+            return ray.integrate(_question.midpoints, periodVoxel, enough);
+        case RayRule::INTEGRALS:
+            return ray.integrate(_question.integrals, periodVoxel, enough);
+        case RayRule::CELLS:
+            break;
+        }
+        const bool whole = periodVoxel >= PeriodChoice::ONE_PIECE;
+        return ray.integrate(*_question.table, whole ? LONGEST : periodVoxel, enough);
+    }
+
+    const PeriodQuestion& _question;
+    std::vector<ShownRay> _rays;
+    bool _doubts = false;
+};
+
+// A choice and what it costs, in samples per voxel of a ray.
+struct Candidate
 {
-    MeanSquare e = errorOf(rays, table, periodVoxel);
-    const auto matters = [&]() {
-        const double error = SAFETY * std::sqrt(e.mean);
-        return e.deviation > DOUBT * e.mean && error < 2.0 * tolerance;
-    };
-    while (matters() && rays.doubleRays())
-        e = errorOf(rays, table, periodVoxel);
-    return SAFETY * std::sqrt(e.mean + 2.0 * e.deviation);
+    PeriodChoice choice;
+    double cost = std::numeric_limits<double>::infinity();
+    bool keeps = false;
+};
+
+Candidate cellsFor(const PeriodQuestion& q, Judge& judge)
+{
+    Candidate candidate;
+    candidate.choice.rule = RayRule::CELLS;
+    const bool corners = q.table->intervals > 3;
+    for (double longest = PeriodChoice::ONE_PIECE; longest > 0.9 * TRUTH; longest *= 0.5) {
+        candidate.choice.periodVoxel = longest;
+        candidate.choice.error = judge.error(RayRule::CELLS, longest);
+        candidate.keeps = candidate.choice.error <= q.tolerance;
+        if (candidate.keeps) break;
+    }
+    const double longest = candidate.choice.periodVoxel;
+    candidate.cost = (corners ? CORNER_COST : PIECE_COST) *
+                     judge.pieces(longest < PeriodChoice::ONE_PIECE ? longest : LONGEST);
+    return candidate;
 }
 
 // The longest period of a sequence, and then of what lies between, whose error is within the
-// tolerance.
-PeriodChoice longestPeriod(RandomRays& rays, const ExtinctionTable& table, double tolerance,
-                           const glm::dvec2& periods)
+// tolerance; none shorter than what would cost more than is known to do.
+Candidate stepsFor(const PeriodQuestion& q, Judge& judge, RayRule rule, double mostCost)
 {
     constexpr double RATIO = 0.7937005259840998; // 2^(-1/3)
-    PeriodChoice choice;
-    choice.integrals = table.integrals;
+    const double stepCost = rule == RayRule::INTEGRALS ? INTEGRAL_COST : 1.0;
+    const double shortest = std::max(SHORTEST, stepCost / mostCost);
+    Candidate candidate;
+    candidate.choice.rule = rule;
+    candidate.choice.error = std::numeric_limits<double>::infinity();
     double longerError = 0.0;
-    for (double period = periods.x; period > 0.999 * periods.y; period *= RATIO) {
-        const double error = upperError(rays, table, period, tolerance);
-        choice.periodVoxel = period;
-        choice.error = error;
-        if (error <= tolerance) {
+    for (double period = LONGEST; period > 0.999 * shortest; period *= RATIO) {
+        const double error = judge.error(rule, period);
+        candidate.choice.periodVoxel = period;
+        candidate.choice.error = error;
+        candidate.keeps = error <= q.tolerance;
+        if (candidate.keeps) {
             // Between this one and the longer one the error is taken for a power of the period.
-            if (longerError > tolerance && error > 0.0)
-                choice.periodVoxel *= std::pow(1.0 / RATIO, std::log(tolerance / error) /
-                                                                std::log(longerError / error));
-            return choice;
+            if (longerError > q.tolerance && error > 0.0)
+                candidate.choice.periodVoxel *= std::pow(
+                    1.0 / RATIO, std::log(q.tolerance / error) / std::log(longerError / error));
+            break;
         }
         longerError = error;
     }
-    return choice;
+    candidate.cost = stepCost / candidate.choice.periodVoxel;
+    return candidate;
 }
 
-// Period, the longest and the shortest given, and kind of table.
-PeriodChoice cheapest(RandomRays& rays, const PeriodQuestion& q, const glm::dvec2& periods)
+bool isBetter(const Candidate& a, const Candidate& b)
 {
-    if (q.integrals.empty()) return longestPeriod(rays, q.midpoints, q.tolerance, periods);
-    const PeriodChoice runs = longestPeriod(rays, q.integrals, q.tolerance, periods);
-    if (q.midpoints.empty()) return runs;
-    const PeriodChoice points = longestPeriod(rays, q.midpoints, q.tolerance, periods);
-    if (points.error > q.tolerance || runs.error > q.tolerance)
-        return runs.error < points.error ? runs : points;
-    return runs.periodVoxel > INTEGRAL_COST * points.periodVoxel ? runs : points;
-}
-
-PeriodChoice choose(const FractionField& field, const PeriodQuestion& question)
-{
-    RandomRays coarse(field, question, SAMPLES_PER_VOXEL);
-    const PeriodChoice choice = cheapest(coarse, question, {LONGEST, COARSE_TRUTH});
-    if (choice.error <= question.tolerance) return choice;
-    RandomRays fine(field, question, 4.0 * SAMPLES_PER_VOXEL);
-    return cheapest(fine, question, {COARSE_TRUTH, SHORTEST});
+    if (a.keeps != b.keeps) return a.keeps;
+    return a.keeps ? a.cost < b.cost : a.choice.error < b.choice.error;
 }
 
 } // namespace
 
-PeriodChoice choosePeriod(const FractionField& field, const PeriodQuestion& question)
+PeriodAnswer choosePeriod(const PeriodQuestion& question, const std::vector<CellRay>& rays)
 {
-    if (question.box.empty()) return {};
-    PeriodChoice choice = choose(field, question);
-    choice.filterError = core::filterError(field, question, PeriodChoice::FILTER_WEIGHT);
-    return choice;
+    Judge judge(question, rays);
+    if (judge.isEmpty()) {
+        PeriodAnswer nothing;
+        nothing.choice.periodVoxel = LONGEST;
+        nothing.choice.rule = question.midpoints.empty() ? RayRule::INTEGRALS : RayRule::MIDPOINTS;
+        if (question.midpoints.empty() && question.integrals.empty())
+            nothing.choice = {RayRule::CELLS, PeriodChoice::ONE_PIECE};
+        nothing.wantsMore = judge.doubts();
+        return nothing;
+    }
+    Candidate best;
+    best.choice.error = std::numeric_limits<double>::infinity();
+    if (question.cells) best = cellsFor(question, judge);
+    const auto consider = [&](RayRule rule, const ExtinctionTable& table) {
+        if (table.empty()) return;
+        const double mostCost = best.keeps ? best.cost : std::numeric_limits<double>::infinity();
+        const Candidate steps = stepsFor(question, judge, rule, mostCost);
+        if (isBetter(steps, best)) best = steps;
+    };
+    consider(RayRule::MIDPOINTS, question.midpoints);
+    consider(RayRule::INTEGRALS, question.integrals);
+    return {best.choice, judge.doubts()};
+}
+
+PeriodChoice choosePeriod(const PeriodQuestion& question, const FractionField& field,
+                          const Box3d& box, const glm::dmat3& voxelToUnits, bool nearest)
+{
+    if (box.empty()) return choosePeriod(question, {}).choice;
+    RandomRays random(box, voxelToUnits, nearest);
+    std::vector<CellRay> rays;
+    std::size_t cells = 0;
+    PeriodAnswer answer;
+    for (std::size_t count = FIRST_RAYS; count <= MOST_RAYS; count *= 2) {
+        while (rays.size() < count && cells < MOST_RAY_CELLS) {
+            rays.push_back(random.next(field));
+            cells += rays.back().cellCount();
+        }
+        answer = choosePeriod(question, rays);
+        if (!answer.wantsMore || cells >= MOST_RAY_CELLS) break;
+    }
+    answer.choice.filterError =
+        core::filterError(field, box, voxelToUnits, *question.table, PeriodChoice::FILTER_WEIGHT);
+    return answer.choice;
 }
 
 bool PeriodChoice::permits(double filterWeight, double tolerance) const

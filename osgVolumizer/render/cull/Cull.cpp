@@ -72,7 +72,11 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
             ? chooseTable(appearance, *volume.prepared, volume.geometry->getScalarRange())
             : chooseTable(appearance, *volume.prepared, precision);
     volume.exactFiltering = choice.exactFiltering;
+    volume.keepsError = choice.periodVoxel.has_value();
     if (choice.periodVoxel) volume.sampling.periodVoxel = glm::dvec3(*choice.periodVoxel);
+    Reasons reasons;
+    explainError(appearance.getErrorTolerance(), choice.expectedError, reasons);
+    reportReasons(appearance, reasons);
     if (appearance.getTargetFrameTime() > 0.0 && visitor.getFrameStamp()) {
         const double now = osg::Timer::instance()->time_s();
         const osg::Matrixd toClip = *volume.frameToEye * *visitor.getProjectionMatrix();

@@ -1,9 +1,18 @@
 #include "SamplingChoices.h"
 
 #include "../textures/BrickResidency.h"
+#include "ChoiceQueue.h"
 
+#include "../../core/accuracy/FilterError.h"
+#include "../../core/accuracy/RandomRays.h"
 #include "../../core/voxels/ValueReader.h"
 
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <utility>
 #include <vector>
 
 namespace osgVolumizer {
@@ -11,64 +20,47 @@ namespace render {
 
 namespace {
 
-// The samples of the bricks that show something under a table, and the box around what they show.
-class ShownBricks
+// What a frame may spend on sampling.
+constexpr std::chrono::milliseconds PER_FRAME(8);
+
+using Rays = std::vector<core::CellRay>;
+
+// The box around what bricks show under a table.
+core::Box3d boxOfShown(const Voxels& voxels, const TableTexture& table)
 {
-public:
-    ShownBricks(const Voxels& voxels, const TableTexture& table)
-        : _voxels(voxels), _blocks(std::size_t(voxels.getLayout().brickCount()))
-    {
-        const osg::ref_ptr<BrickResidency> textures = BrickResidency::of(voxels);
-        OccupancyQuery query;
-        query.table = &table;
-        for (std::size_t i = 0; i < _blocks.size(); ++i) {
-            const auto brick = static_cast<std::int64_t>(i);
-            const auto values = voxels.getBrickRange(brick);
-            if (!showsValues(voxels, query, values.first, values.second)) continue;
-            _blocks[i] = BrickResidency::load(voxels, brick);
-            if (!_blocks[i]) continue;
-            const auto cells = textures->cells().get(voxels, brick, query);
-            if (!cells || cells->box.empty()) continue;
-            _box.expand(cells->box.min);
-            _box.expand(cells->box.max);
+    const osg::ref_ptr<BrickResidency> textures = BrickResidency::of(voxels);
+    OccupancyQuery query;
+    query.table = &table;
+    core::Box3d box;
+    for (std::int64_t brick = 0; brick < voxels.getLayout().brickCount(); ++brick) {
+        const auto values = voxels.getBrickRange(brick);
+        if (!showsValues(voxels, query, values.first, values.second)) continue;
+        const auto cells = textures->cells().get(voxels, brick, query);
+        if (!cells || cells->box.empty()) continue;
+        box.expand(cells->box.min);
+        box.expand(cells->box.max);
+    }
+    return box;
+}
+
+// A box outwards to eighths of a larger one, so that small changes of a table leave it as it is.
+core::Box3d rounded(const core::Box3d& box, const core::Box3d& whole)
+{
+    if (box.empty()) return box;
+    const glm::dvec3 step = whole.size() / 8.0;
+    core::Box3d result;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double s = step[axis];
+        if (!(s > 0.0)) {
+            result.min[axis] = box.min[axis];
+            result.max[axis] = box.max[axis];
+            continue;
         }
+        const double origin = whole.min[axis];
+        result.min[axis] = origin + s * std::floor((box.min[axis] - origin) / s);
+        result.max[axis] = origin + s * std::ceil((box.max[axis] - origin) / s);
     }
-
-    const core::Box3d& box() const { return _box; } ///< voxel frame
-    core::ValueReader::Brick operator()(std::int64_t brick) const
-    {
-        const VoxelBlock& block = _blocks[static_cast<std::size_t>(brick)];
-        return {{block.data, _voxels.getType(), _voxels.getComponents(),
-                 _voxels.getLayout().brick(brick).samples.size()},
-                block.owner};
-    }
-
-private:
-    const Voxels& _voxels;
-    std::vector<VoxelBlock> _blocks; ///< empty where nothing shows
-    core::Box3d _box;
-};
-
-core::PeriodChoice choose(const Voxels& voxels, const SamplingQuestion& q)
-{
-    const ShownBricks shown(voxels, q.integrals.texture ? q.integrals : q.midpoints);
-    const osg::Vec2d range = voxels.getRange();
-    // Holes show what the lowest value shows, as in textures.
-    core::ValueReader reader(
-        voxels.getLayout(), [&shown](std::int64_t brick) { return shown(brick); },
-        q.nearest ? core::ValueReader::NEAREST : core::ValueReader::LINEAR, 0, range.x());
-    const double scale = 1.0 / (range.y() - range.x()), offset = -range.x() * scale;
-    core::PeriodQuestion question;
-    question.tolerance = q.tolerance;
-    question.midpoints = q.midpoints.entries();
-    question.integrals = q.integrals.entries();
-    question.voxelToUnits = q.frameToUnits;
-    question.box = intersection(shown.box(), q.box);
-    return core::choosePeriod(
-        [&](const glm::dvec3& positionVoxel) {
-            return reader.value(positionVoxel) * scale + offset;
-        },
-        question);
+    return intersection(result, whole);
 }
 
 std::uint64_t modifiedCount(const Voxels& voxels)
@@ -79,31 +71,209 @@ std::uint64_t modifiedCount(const Voxels& voxels)
     return sum;
 }
 
+// Reads the voxels as fractions of their range; holes are the lowest value, as in textures.
+class Reader
+{
+public:
+    Reader(const Voxels& voxels, bool nearest)
+        : _voxels(voxels), _blocks(std::size_t(voxels.getLayout().brickCount())),
+          _reader(
+              voxels.getLayout(), [this](std::int64_t brick) { return load(brick); },
+              nearest ? core::ValueReader::NEAREST : core::ValueReader::LINEAR, 0,
+              voxels.getRange().x())
+    {
+        const osg::Vec2d range = voxels.getRange();
+        _scale = 1.0 / (range.y() - range.x());
+        _offset = -range.x() * _scale;
+    }
+    Reader(const Reader&) = delete;
+    Reader& operator=(const Reader&) = delete;
+
+    double operator()(const glm::dvec3& positionVoxel)
+    {
+        return _reader.value(positionVoxel) * _scale + _offset;
+    }
+
+private:
+    core::ValueReader::Brick load(std::int64_t brick)
+    {
+        VoxelBlock& block = _blocks[static_cast<std::size_t>(brick)];
+        if (!block) block = BrickResidency::load(_voxels, brick);
+        return {{block.data, _voxels.getType(), _voxels.getComponents(),
+                 _voxels.getLayout().brick(brick).samples.size()},
+                block.owner};
+    }
+
+    const Voxels& _voxels;
+    std::vector<VoxelBlock> _blocks;
+    core::ValueReader _reader;
+    double _scale, _offset;
+};
+
+std::vector<glm::vec4> texelsOf(const TableTexture& table)
+{
+    const core::ExtinctionTable entries = table.entries();
+    if (entries.empty()) return {};
+    const int count = entries.integrals ? 2 * entries.count + 1 : entries.count;
+    return {entries.texels, entries.texels + count};
+}
+
 } // namespace
+
+struct SamplingChoices::Sampled
+{
+    std::mutex mutex; ///< of what follows; held while a frame samples
+    core::RandomRays random;
+    std::shared_ptr<Rays> rays = std::make_shared<Rays>(); ///< not changed once others see it
+    bool shared = false;
+    std::size_t cells = 0;
+
+    Sampled(const core::Box3d& box, const glm::dmat3& frameToUnits, bool nearest)
+        : random(box, frameToUnits, nearest)
+    {
+    }
+};
+
+// Of one question. Owns all it is made from.
+struct SamplingChoices::Answer
+{
+    std::atomic<bool> deciding{false};
+    std::mutex mutex; ///< of what follows, but for what never changes
+    std::size_t wanted = core::FIRST_RAYS;
+    bool known = false;
+    core::PeriodChoice choice;
+    double filterError = -1.0;
+    // Never changed:
+    std::vector<glm::vec4> midpoints, integrals;
+    std::shared_ptr<const core::IntervalTable> table;
+    core::PeriodQuestion question;
+
+    explicit Answer(const SamplingQuestion& q)
+        : midpoints(texelsOf(q.midpoints)), integrals(texelsOf(q.integrals)),
+          table(q.intervals.intervals)
+    {
+        question.tolerance = q.tolerance;
+        question.opaqueEnough = q.opaqueEnough;
+        question.cells = q.cells;
+        question.table = table.get();
+        question.midpoints = q.midpoints.entries();
+        question.midpoints.texels = midpoints.data();
+        question.integrals = q.integrals.entries();
+        question.integrals.texels = integrals.data();
+    }
+};
+
+namespace {
+
+// A question in the queue, or being decided; over when this is destroyed, whether it was or not.
+class Decision
+{
+public:
+    explicit Decision(std::shared_ptr<SamplingChoices::Answer> answer) : _answer(std::move(answer))
+    {
+        _answer->deciding = true;
+    }
+    ~Decision() { _answer->deciding = false; }
+    Decision(const Decision&) = delete;
+    Decision& operator=(const Decision&) = delete;
+    SamplingChoices::Answer& answer() const { return *_answer; }
+
+private:
+    std::shared_ptr<SamplingChoices::Answer> _answer;
+};
+
+// Another thread's part.
+void decide(SamplingChoices::Answer& answer, const Rays& rays, bool mayGrow)
+{
+    const core::PeriodAnswer found = core::choosePeriod(answer.question, rays);
+    std::lock_guard<std::mutex> lock(answer.mutex);
+    answer.choice = found.choice;
+    answer.choice.filterError = answer.filterError;
+    answer.known = !found.wantsMore || !mayGrow;
+    answer.wanted = 2 * rays.size();
+}
+
+// A frame's part: true when there are as many rays as are wanted.
+bool sample(SamplingChoices::Sampled& sampled, Reader& reader, std::size_t wanted)
+{
+    const auto end = std::chrono::steady_clock::now() + PER_FRAME;
+    const auto enough = [&]() {
+        return sampled.rays->size() >= wanted || sampled.cells >= core::MOST_RAY_CELLS;
+    };
+    if (enough()) return true;
+    if (sampled.shared) sampled.rays = std::make_shared<Rays>(*sampled.rays);
+    sampled.shared = false;
+    const core::FractionField field = [&reader](const glm::dvec3& p) { return reader(p); };
+    while (!enough() && std::chrono::steady_clock::now() < end) {
+        sampled.rays->push_back(sampled.random.next(field));
+        sampled.cells += sampled.rays->back().cellCount();
+    }
+    return enough();
+}
+
+} // namespace
+
+SamplingChoices::~SamplingChoices()
+{
+    ChoiceQueue::instance().ask(this, [] {}); // in place of one that waits
+}
+
+bool SamplingChoices::DataKey::operator==(const DataKey& o) const
+{
+    return layoutCount == o.layoutCount && modified == o.modified &&
+           frameToUnits == o.frameToUnits && box == o.box && nearest == o.nearest;
+}
 
 bool SamplingChoices::Key::operator==(const Key& o) const
 {
     return midpointsId == o.midpointsId && integralsId == o.integralsId &&
-           layoutCount == o.layoutCount && modified == o.modified && tolerance == o.tolerance &&
-           frameToUnits == o.frameToUnits && box == o.box && nearest == o.nearest;
+           intervalsId == o.intervalsId && tolerance == o.tolerance && cells == o.cells &&
+           data == o.data;
 }
 
-std::shared_ptr<SamplingChoices::Answer> SamplingChoices::answerTo(const Key& key)
+std::optional<core::PeriodChoice> SamplingChoices::get(const Voxels& voxels,
+                                                       const SamplingQuestion& q)
 {
-    std::lock_guard<std::mutex> lock(_mutex);
-    if (const auto* known = _answers.find(key)) return *known;
-    return _answers.add(key, std::make_shared<Answer>());
-}
-
-core::PeriodChoice SamplingChoices::get(const Voxels& voxels, const SamplingQuestion& q)
-{
-    const std::shared_ptr<Answer> answer =
-        answerTo({q.midpoints.id, q.integrals.id, voxels.getLayoutCount(), modifiedCount(voxels),
-                  q.tolerance, q.frameToUnits, q.box, q.nearest});
-    std::lock_guard<std::mutex> lock(answer->mutex);
-    if (!answer->known) answer->choice = choose(voxels, q);
-    answer->known = true;
-    return answer->choice;
+    const core::Box3d shown = rounded(intersection(boxOfShown(voxels, q.intervals), q.box), q.box);
+    const DataKey data{voxels.getLayoutCount(), modifiedCount(voxels), q.frameToUnits, shown,
+                       q.nearest};
+    std::shared_ptr<Answer> answer;
+    std::shared_ptr<Sampled> sampled;
+    {
+        const Key key{q.midpoints.id, q.integrals.id, q.intervals.id, q.tolerance, q.cells, data};
+        std::lock_guard<std::mutex> lock(_mutex);
+        const auto* known = _answers.find(key);
+        answer = known ? *known : _answers.add(key, std::make_shared<Answer>(q));
+        const auto* rays = _sampled.find(data);
+        if (!shown.empty())
+            sampled = rays ? *rays
+                           : _sampled.add(
+                                 data, std::make_shared<Sampled>(shown, q.frameToUnits, q.nearest));
+    }
+    std::unique_lock<std::mutex> lock(answer->mutex);
+    if (answer->known) return answer->choice;
+    if (answer->deciding) return std::nullopt;
+    if (!sampled) { // nothing shows
+        answer->choice = core::choosePeriod(answer->question, {}).choice;
+        answer->known = true;
+        return answer->choice;
+    }
+    std::lock_guard<std::mutex> sampling(sampled->mutex);
+    Reader reader(voxels, q.nearest);
+    if (answer->filterError < 0.0)
+        answer->filterError =
+            core::filterError([&reader](const glm::dvec3& p) { return reader(p); }, shown,
+                              q.frameToUnits, *answer->table, core::PeriodChoice::FILTER_WEIGHT);
+    if (!sample(*sampled, reader, answer->wanted)) return std::nullopt;
+    sampled->shared = true;
+    const bool mayGrow =
+        2 * answer->wanted <= core::MOST_RAYS && sampled->cells < core::MOST_RAY_CELLS;
+    const std::shared_ptr<const Rays> rays = sampled->rays;
+    const auto decision = std::make_shared<Decision>(answer);
+    lock.unlock();
+    ChoiceQueue::instance().ask(
+        this, [decision, rays, mayGrow] { decide(decision->answer(), *rays, mayGrow); });
+    return std::nullopt;
 }
 
 } // namespace render

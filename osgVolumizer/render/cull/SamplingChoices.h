@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 namespace osgVolumizer {
 namespace render {
@@ -19,46 +20,56 @@ namespace render {
 /// What a choice depends on, besides the data.
 struct SamplingQuestion
 {
-    double tolerance = 1e-3; ///< root mean square error
-    TableTexture midpoints;  ///< a table without integrals; none where texture is null
-    TableTexture integrals;  ///< the same table with them; none where texture is null
+    double tolerance = 1e-3;    ///< root mean square error
+    double opaqueEnough = 2e-5; ///< what is left of the light where rays end
+    TableTexture midpoints;     ///< a table without integrals; none where texture is null
+    TableTexture integrals;     ///< the same table with them; none where texture is null
+    TableTexture intervals;     ///< the same table, cut at its corners; always
+    bool cells = true;          ///< whether rays may be split at its corners
     glm::dmat3 frameToUnits{1.0};
     core::Box3d box; ///< voxel frame; of the region
     bool nearest = false;
 };
 
-/// Keeps the answers of core::choosePeriod() to the last few questions. Reads the bricks that show
-/// something. Thread safe; whoever asks what is just being chosen waits for it, other questions do
-/// not.
+/// Keeps the answers of core::choosePeriod() to the last few questions. Frames do not wait for
+/// them: each samples the data for a few milliseconds, and what follows is left to another thread,
+/// which never sees the data. Thread safe.
 class SamplingChoices
 {
 public:
-    /// Expects voxels of one component.
-    core::PeriodChoice get(const Voxels& voxels, const SamplingQuestion& question);
+    SamplingChoices() = default;
+    ~SamplingChoices();
+    SamplingChoices(const SamplingChoices&) = delete;
+    SamplingChoices& operator=(const SamplingChoices&) = delete;
+
+    /// Null until it is known: ask again. Expects voxels of one component.
+    std::optional<core::PeriodChoice> get(const Voxels& voxels, const SamplingQuestion& question);
+
+    struct Sampled; // what is sampled of the data
+    struct Answer;
 
 private:
+    struct DataKey
+    {
+        unsigned layoutCount;
+        std::uint64_t modified;
+        glm::dmat3 frameToUnits;
+        core::Box3d box; ///< of what shows something, or a little more
+        bool nearest;
+        bool operator==(const DataKey& o) const;
+    };
     struct Key
     {
-        unsigned midpointsId, integralsId, layoutCount;
-        std::uint64_t modified;
+        unsigned midpointsId, integralsId, intervalsId;
         double tolerance;
-        glm::dmat3 frameToUnits;
-        core::Box3d box;
-        bool nearest;
+        bool cells;
+        DataKey data;
         bool operator==(const Key& o) const;
     };
-    struct Answer
-    {
-        std::mutex mutex; ///< of what follows; held while it is chosen
-        bool known = false;
-        core::PeriodChoice choice;
-    };
-    static constexpr std::size_t CAPACITY = 4;
-
-    std::shared_ptr<Answer> answerTo(const Key& key);
 
     std::mutex _mutex;
-    core::RecencyCache<Key, std::shared_ptr<Answer>> _answers{CAPACITY};
+    core::RecencyCache<Key, std::shared_ptr<Answer>> _answers{4};
+    core::RecencyCache<DataKey, std::shared_ptr<Sampled>> _sampled{2};
 };
 
 } // namespace render

@@ -26,31 +26,75 @@ glm::dmat3 voxelToObject(const Voxels& voxels, const PreparedGeometry& prepared)
     return glm::dmat3(s.x(), 0.0, 0.0, 0.0, s.y(), 0.0, 0.0, 0.0, s.z());
 }
 
+SamplingQuestion questionFor(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
+{
+    using A = VolumeAppearance;
+    const osg::ref_ptr<AppearanceData> data = renderData<AppearanceData>(appearance);
+    const Voxels& voxels = *appearance.getVoxels();
+    const osg::Vec2d range = voxels.getRange();
+    const auto tableOf = [&](A::Lookup lookup) {
+        return data->tables.get(*appearance.getLookupTable(), range, lookup);
+    };
+    const A::Lookup lookup = usedLookup(appearance, prepared);
+    SamplingQuestion question;
+    question.tolerance = appearance.getErrorTolerance();
+    question.opaqueEnough = opaqueEnoughFor(question.tolerance);
+    question.cells = (lookup == A::AUTOMATIC_LOOKUP || lookup == A::CELL_BY_CELL) &&
+                     canSplitRays(appearance, prepared);
+    const bool steps = lookup != A::CELL_BY_CELL;
+    if (steps && lookup != A::PREINTEGRATED) question.midpoints = tableOf(A::AFTER_INTERPOLATION);
+    if (steps && lookup != A::AFTER_INTERPOLATION) question.integrals = tableOf(A::PREINTEGRATED);
+    question.intervals = tableOf(A::CELL_BY_CELL);
+    question.frameToUnits = voxelToObject(voxels, prepared) / appearance.getEffectiveOpacityUnit();
+    question.box = prepared.voxelFrame ? prepared.regionBox : voxels.getLayout().extent();
+    question.nearest = appearance.getInterpolation() == A::NEAREST;
+    return question;
+}
+
+// Keeps every tolerance, whatever the data, at more than its price.
+core::PeriodChoice safeChoice(const SamplingQuestion& question)
+{
+    core::PeriodChoice choice;
+    if (question.cells) {
+        // Of white noise, the worst that there is, pieces as long as cells are off by up to 1.4e-3,
+        // halves by 1.2e-4.
+        const double tolerance = question.tolerance;
+        choice.rule = core::RayRule::CELLS;
+        choice.periodVoxel = tolerance >= 3e-3 ? choice.ONE_PIECE : tolerance >= 2e-4 ? 0.5 : 0.25;
+    } else {
+        choice.rule =
+            question.integrals.texture ? core::RayRule::INTEGRALS : core::RayRule::MIDPOINTS;
+        choice.periodVoxel = 1.0 / 16.0;
+    }
+    return choice;
+}
+
 } // namespace
 
 TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
                         const Precision& ofTextures)
 {
     const osg::ref_ptr<AppearanceData> data = renderData<AppearanceData>(appearance);
-    const osg::Vec2d range = appearance.getVoxels()->getRange();
-    const auto tableOf = [&](VolumeAppearance::Lookup lookup) {
-        return data->tables.get(*appearance.getLookupTable(), range, lookup);
-    };
-    const VolumeAppearance::Lookup lookup = usedLookup(appearance, prepared);
-    if (!keepsTolerance(appearance, prepared)) return {tableOf(lookup), std::nullopt, false};
-    SamplingQuestion question;
-    question.tolerance = appearance.getErrorTolerance();
-    if (lookup != VolumeAppearance::PREINTEGRATED)
-        question.midpoints = tableOf(VolumeAppearance::AFTER_INTERPOLATION);
-    if (lookup != VolumeAppearance::AFTER_INTERPOLATION)
-        question.integrals = tableOf(VolumeAppearance::PREINTEGRATED);
     const Voxels& voxels = *appearance.getVoxels();
-    question.frameToUnits = voxelToObject(voxels, prepared) / appearance.getEffectiveOpacityUnit();
-    question.box = prepared.voxelFrame ? prepared.regionBox : voxels.getLayout().extent();
-    question.nearest = appearance.getInterpolation() == VolumeAppearance::NEAREST;
-    const core::PeriodChoice choice = data->choices.get(voxels, question);
-    return {choice.integrals ? question.integrals : question.midpoints, choice.periodVoxel,
-            !question.nearest && !choice.permits(ofTextures.filterWeight, question.tolerance)};
+    if (!keepsTolerance(appearance, prepared)) {
+        TableChoice choice;
+        choice.table = data->tables.get(*appearance.getLookupTable(), voxels.getRange(),
+                                        usedLookup(appearance, prepared));
+        return choice;
+    }
+    const SamplingQuestion question = questionFor(appearance, prepared);
+    const std::optional<core::PeriodChoice> known = data->choices.get(voxels, question);
+    const core::PeriodChoice made = known ? *known : safeChoice(question);
+    TableChoice choice;
+    choice.table = made.rule == core::RayRule::CELLS       ? question.intervals
+                   : made.rule == core::RayRule::INTEGRALS ? question.integrals
+                                                           : question.midpoints;
+    choice.periodVoxel = made.periodVoxel;
+    choice.refining = !known;
+    choice.expectedError = made.error;
+    choice.exactFiltering = !question.nearest && ofTextures.filterWeight > 0.0 &&
+                            (!known || !made.permits(ofTextures.filterWeight, question.tolerance));
+    return choice;
 }
 
 TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
@@ -60,9 +104,11 @@ TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeomet
     const LookupTable& table = *appearance.getLookupTable();
     Reasons reasons;
     const bool gathers = rowOf(usedRayFunction(appearance, prepared, reasons)).gathers;
-    return {gathers ? data->tables.get(table, scalarRange, VolumeAppearance::AFTER_INTERPOLATION)
-                    : data->tables.points(table, scalarRange),
-            std::nullopt, false};
+    TableChoice choice;
+    choice.table = gathers
+                       ? data->tables.get(table, scalarRange, VolumeAppearance::AFTER_INTERPOLATION)
+                       : data->tables.points(table, scalarRange);
+    return choice;
 }
 
 } // namespace render

@@ -14,6 +14,8 @@ struct TableChoice
     /// For an error tolerance; none where none is asked for, or it cannot be kept.
     std::optional<double> periodVoxel;
     bool exactFiltering = false; ///< filtering as precise as that of textures would not keep it
+    double expectedError = 0.0;  ///< root mean square; 0: not known
+    bool refining = false;       ///< this one is safe; a cheaper one is being looked for
 };
 
 /// Expects voxels. Reports why an error tolerance cannot be kept.

@@ -44,8 +44,12 @@ public:
         voxels = voxelsIn(appearance, *prepared);
         const TableChoice choice =
             voxels ? chooseTable(appearance, *prepared, leastPrecision()) : TableChoice();
-        return render::settingsInForce(appearance, *prepared, choice.table.lookup(),
-                                       choice.exactFiltering);
+        VolumeAppearance::Settings settings = render::settingsInForce(
+            appearance, *prepared, choice.table.lookup(), choice.exactFiltering);
+        settings.expectedError = choice.expectedError;
+        settings.refining = choice.refining;
+        explainError(appearance.getErrorTolerance(), choice.expectedError, settings.reasons);
+        return settings;
     }
 };
 

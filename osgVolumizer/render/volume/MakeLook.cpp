@@ -31,9 +31,11 @@ double voxelsPerPixel(const glm::dmat4& toEye, const core::Box3d& bounds,
 }
 
 // Depth between samples: one period, per voxel axis, along the view axis; longer where that would
-// be more samples than allowed. Where pixels cover several voxels, periods count in pixels.
+// be more samples than allowed. Where pixels cover several voxels, periods count in pixels, unless
+// an error is to be kept.
 double sampleDepth(const glm::dmat4& toEye, const core::Box3d& bounds,
-                   const core::SamplingParameters& sampling, osgUtil::CullVisitor& visitor)
+                   const core::SamplingParameters& sampling, bool keepsError,
+                   osgUtil::CullVisitor& visitor)
 {
     const glm::dvec3 alongView = glm::inverse(glm::dmat3(toEye)) * glm::dvec3(0.0, 0.0, -1.0);
     const double samplesPerDepth =
@@ -44,8 +46,8 @@ double sampleDepth(const glm::dmat4& toEye, const core::Box3d& bounds,
         nearest = std::min(nearest, depth);
         farthest = std::max(farthest, depth);
     }
-    return std::max(voxelsPerPixel(toEye, bounds, sampling, visitor) / samplesPerDepth,
-                    (farthest - nearest) / sampling.maximumSamples);
+    const double stretch = keepsError ? 1.0 : voxelsPerPixel(toEye, bounds, sampling, visitor);
+    return std::max(stretch / samplesPerDepth, (farthest - nearest) / sampling.maximumSamples);
 }
 
 // Along the view axis.
@@ -102,14 +104,14 @@ void setInterpolation(const VolumeInstance& volume, const TableTexture& table,
                            (appearance.getExactFiltering() || voxelsPerSample < 0.999);
 }
 
-// Of a tolerance that is asked for a small part; else so little that it does not stand out among
-// errors of the period, which are of second order.
+// Without a tolerance so little that it does not stand out among errors of the period, which are of
+// second order.
 double opaqueEnough(const VolumeAppearance& appearance, const VolumeLook& look)
 {
-    constexpr double OF_A_VOXEL = 3e-5, LEAST = 1e-7, SHARE = 0.02;
-    const double tolerance = appearance.getErrorTolerance();
-    if (tolerance > 0.0) return std::max(SHARE * tolerance, LEAST);
-    if (look.features.cells || look.features.isExact()) return 1e-6;
+    constexpr double OF_A_VOXEL = 3e-5, LEAST = 1e-7, OF_EXACT = 1e-6;
+    if (appearance.getErrorTolerance() > 0.0)
+        return opaqueEnoughFor(appearance.getErrorTolerance());
+    if (look.features.cells || look.features.isExact()) return OF_EXACT;
     const double period = std::min(look.voxelsPerSample, 1.0);
     return std::max(OF_A_VOXEL * period * period, LEAST);
 }
@@ -198,7 +200,8 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     look->cut = makeCutLook(volume, look->center, features);
     const glm::dmat4 toEye = toGlm(*volume.frameToEye);
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;
-    look->step = sampleDepth(toEye, prepared.regionBox, volume.sampling, visitor);
+    look->step =
+        sampleDepth(toEye, prepared.regionBox, volume.sampling, volume.keepsError, visitor);
     look->maximumSteps = volume.sampling.maximumSamples + 2;
     look->voxelsPerSample = voxelsPerDepth(toEye, volume.sampling) * look->step;
     if (visitor.getState()) features.filterBits = filterBitsOf(*visitor.getState());

@@ -4,6 +4,7 @@
 #include "../draw/RayFunctions.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace osgVolumizer {
 namespace render {
@@ -214,16 +215,39 @@ VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
     // deformed volume do not know.
     Reasons ofRayFunction;
     const bool rays = prepared.voxelFrame || usesSlabs(appearance, prepared);
-    const bool integrated =
-        appearance.getVoxels()->getComponents() == 1 &&
-        rowOf(usedRayFunction(appearance, prepared, ofRayFunction)).integratesLight;
-    const auto interpolation = usedInterpolation(appearance, ofRayFunction);
-    const bool suits = appearance.getLookup() == VolumeAppearance::CELL_BY_CELL
-                           ? usesSlabs(appearance, prepared) &&
-                                 interpolation != VolumeAppearance::CUBIC &&
-                                 appearance.getCombineRule() != VolumeAppearance::PAINT
-                           : rays && interpolation != VolumeAppearance::NEAREST;
-    return integrated && suits ? appearance.getLookup() : VolumeAppearance::AFTER_INTERPOLATION;
+    const bool runs = rays && appearance.getVoxels()->getComponents() == 1 &&
+                      appearance.getInterpolation() != VolumeAppearance::NEAREST &&
+                      rowOf(usedRayFunction(appearance, prepared, ofRayFunction)).integratesLight;
+    const bool cells = appearance.getLookup() == VolumeAppearance::CELL_BY_CELL ||
+                       (appearance.getLookup() == VolumeAppearance::AUTOMATIC_LOOKUP &&
+                        appearance.getErrorTolerance() > 0.0);
+    return runs || (cells && canSplitRays(appearance, prepared))
+               ? appearance.getLookup()
+               : VolumeAppearance::AFTER_INTERPOLATION;
+}
+
+bool canSplitRays(const VolumeAppearance& appearance, const PreparedGeometry& prepared)
+{
+    Reasons ofOthers;
+    return usesSlabs(appearance, prepared) && appearance.getVoxels()->getComponents() == 1 &&
+           usedInterpolation(appearance, ofOthers) != VolumeAppearance::CUBIC &&
+           appearance.getCombineRule() != VolumeAppearance::PAINT &&
+           rowOf(usedRayFunction(appearance, prepared, ofOthers)).integratesLight;
+}
+
+double opaqueEnoughFor(double tolerance)
+{
+    constexpr double SHARE = 0.02, LEAST = 1e-7;
+    return std::max(SHARE * tolerance, LEAST);
+}
+
+void explainError(double tolerance, double expectedError, Reasons& reasons)
+{
+    if (!(tolerance > 0.0 && expectedError > tolerance)) return;
+    std::ostringstream words;
+    words << "an error of " << tolerance << " cannot be kept with these voxels and this table; "
+          << expectedError << " is expected";
+    reasons.push_back(words.str());
 }
 
 bool looksUpBefore(const VolumeAppearance& appearance, VolumeAppearance::RayFunction function,

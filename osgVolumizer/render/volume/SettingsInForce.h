@@ -39,6 +39,11 @@ void explainLookup(const VolumeAppearance& appearance, const PreparedGeometry& p
 /// is to decide. Expects voxels.
 VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
                                     const PreparedGeometry& prepared);
+/// Whether rays can be split at faces of cells and corners of the table: composited slabs of one
+/// component that is not interpolated cubically, and does not paint. Expects voxels.
+bool canSplitRays(const VolumeAppearance& appearance, const PreparedGeometry& prepared);
+/// What is left of the light where rays end that keep a tolerance.
+double opaqueEnoughFor(double tolerance);
 /// Whether samples are looked up before they are interpolated.
 bool looksUpBefore(const VolumeAppearance& appearance, VolumeAppearance::RayFunction function,
                    VolumeAppearance::Interpolation interpolation);
@@ -48,10 +53,12 @@ bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry
                       Reasons& reasons);
 
 /// All of them together. `table`: how that which is used is read.
-/// `exactFiltering`: whether an error tolerance needs that.
+/// `exactFiltering`: whether an error tolerance needs that. Adds what is expected of a tolerance.
 VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
                                            const PreparedGeometry& prepared,
                                            VolumeAppearance::Lookup table, bool exactFiltering);
+/// That an error is expected which is more than what was asked for; nothing where none is known.
+void explainError(double tolerance, double expectedError, Reasons& reasons);
 
 /// Reports each reason once in the life of the process.
 void reportReasons(const VolumeAppearance& appearance, const Reasons& reasons);

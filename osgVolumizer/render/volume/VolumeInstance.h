@@ -44,6 +44,7 @@ struct VolumeInstance
     double cellSize = 8.0; ///< voxels
     core::SamplingParameters sampling;
     bool exactFiltering = false; ///< for an error tolerance, whatever the appearance says
+    bool keepsError = false;     ///< the period was chosen for an error tolerance
     double rayDistance = 1.0;    ///< pixels between rays, where all of the volume is drawn at once
     std::uint64_t viewId = 0;    ///< see viewIdOf()
     TimeSteps steps;             ///< of voxels that have several
