@@ -1,0 +1,203 @@
+// What VolumeAppearance::setErrorTolerance() promises is kept whatever is shown, and at a fair
+// price.
+
+#include "PromiseCases.h"
+
+#include <support/GLTest.h>
+#include <support/Instrumented.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <sstream>
+
+namespace PromiseTest {
+
+using namespace osgVolumizer;
+using namespace osgVolumizer::test;
+using support::FloatImage;
+using support::RenderOptions;
+
+namespace {
+
+constexpr double TOLERANCES[] = {1e-2, 1e-3, 1e-4};
+
+// A case is drawn in one context, whose views and settings change.
+class Examiner
+{
+public:
+    explicit Examiner(PromiseCase& subject)
+        : _case(subject), _renderer(subject.twin.node, subject.views.front())
+    {
+        oracle::Scene scene = oracleScene(subject.twin.oracle);
+        scene.tolerance = 1e-8; // rays are then good to 1e-7, see SharpTableTest
+        for (const RenderOptions& options : subject.views) {
+            _expected.push_back(oraclePicture(scene, options));
+            _covered.push_back(support::coveredPixels(_expected.back(), 1e-3f));
+        }
+    }
+
+    /// Root mean square error of a view over the pixels that show something.
+    double error(std::size_t view)
+    {
+        return compare(render(view, false), _expected[view], _covered[view]).rmse;
+    }
+    /// The largest of all views; that of the first one above `enough`.
+    double worstError(double enough = INFINITY)
+    {
+        double worst = 0.0;
+        for (std::size_t view = 0; view < _expected.size() && worst <= enough; ++view)
+            worst = std::max(worst, error(view));
+        return worst;
+    }
+    /// In all views.
+    double samples()
+    {
+        double sum = 0.0;
+        for (std::size_t view = 0; view < _expected.size(); ++view)
+            for (const glm::vec4& pixel : render(view, true).pixels)
+                sum += pixel.r;
+        return sum;
+    }
+    std::size_t viewCount() const { return _expected.size(); }
+
+private:
+    FloatImage render(std::size_t view, bool countSamples)
+    {
+        _renderer.options() = _case.views[view];
+        support::viewHooks(_renderer.viewer()).countSamples = countSamples;
+        return _renderer.render();
+    }
+
+    PromiseCase& _case;
+    support::SceneRenderer _renderer;
+    std::vector<FloatImage> _expected;
+    std::vector<support::Mask> _covered;
+};
+
+std::string describe(const PromiseCase& c, double tolerance)
+{
+    std::ostringstream text;
+    text << "case " << c.number << ", " << c.table << " of " << c.field << ", tolerance "
+         << tolerance;
+    return text.str();
+}
+
+// Cases part, part + PARTS, and so on, so that the slow ones are spread.
+constexpr int PARTS = 8;
+
+class Promise : public support::GLTest, public ::testing::WithParamInterface<int>
+{
+};
+
+TEST_P(Promise, IsKept)
+{
+    const int step = support::INSTRUMENTED ? 9 * PARTS : PARTS;
+    for (int number = GetParam(); number < PROMISE_CASES; number += step) {
+        PromiseCase c = makePromiseCase(number);
+        Examiner examiner(c);
+        for (const double tolerance : TOLERANCES) {
+            ASSERT_TRUE(c.twin.node->setErrorTolerance(tolerance));
+            double worst = 0.0;
+            for (std::size_t view = 0; view < examiner.viewCount(); ++view) {
+                const double error = examiner.error(view);
+                EXPECT_LE(error, tolerance) << describe(c, tolerance) << ", view " << view;
+                worst = std::max(worst, error);
+            }
+            std::ostringstream result;
+            result << c.table << "; " << c.field << "; error " << worst << "; samples "
+                   << examiner.samples();
+            RecordProperty("case " + std::to_string(number) + ", tolerance " +
+                               std::to_string(tolerance),
+                           result.str());
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Parts, Promise, ::testing::Range(0, PARTS));
+
+// A way to sample that can be fixed by hand.
+struct Way
+{
+    const char* name;
+    void (*apply)(VolumeAppearance& node, double periodVoxel);
+};
+
+void applyLookup(VolumeAppearance& node, VolumeAppearance::Lookup lookup, double periodVoxel)
+{
+    node.setLookup(lookup);
+    node.setSamplingPeriod({periodVoxel, periodVoxel, periodVoxel});
+}
+
+const Way WAYS[] = {{"after interpolation",
+                     [](VolumeAppearance& node, double periodVoxel) {
+                         applyLookup(node, VolumeAppearance::AFTER_INTERPOLATION, periodVoxel);
+                     }},
+                    {"preintegrated", [](VolumeAppearance& node, double periodVoxel) {
+                         applyLookup(node, VolumeAppearance::PREINTEGRATED, periodVoxel);
+                     }}};
+
+// What is found by trying everything.
+struct Best
+{
+    double samples = INFINITY; ///< the fewest that keep a tolerance in all views
+    const char* way = "none";
+    double periodVoxel = 0.0;
+};
+
+// For each tolerance. A way's period is the longest of a geometric sequence that keeps it.
+std::vector<Best> findBest(PromiseCase& c, Examiner& examiner)
+{
+    constexpr double LONGEST = 16.0, SHORTEST = 1.0 / 16.0, RATIO = 0.8;
+    std::vector<Best> best(std::size(TOLERANCES));
+    c.twin.node->setErrorTolerance(0.0);
+    for (const Way& way : WAYS) {
+        std::size_t next = 0; // tolerance to be kept, which descend
+        for (double period = LONGEST; period > SHORTEST && next < best.size(); period *= RATIO) {
+            way.apply(*c.twin.node, period);
+            const double error = examiner.worstError(TOLERANCES[next]);
+            if (error > TOLERANCES[next]) continue;
+            const double samples = examiner.samples();
+            for (; next < best.size() && error <= TOLERANCES[next]; ++next)
+                if (samples < best[next].samples) best[next] = {samples, way.name, period};
+        }
+    }
+    return best;
+}
+
+// These have all kinds of tables and of fields.
+class PromiseCost : public support::GLTest, public ::testing::WithParamInterface<int>
+{
+};
+
+TEST_P(PromiseCost, IsNearTheLeast)
+{
+    if (support::INSTRUMENTED) return; // takes minutes, and is the same code with other numbers
+    PromiseCase c = makePromiseCase(GetParam());
+    Examiner examiner(c);
+    std::vector<double> chosen;
+    for (const double tolerance : TOLERANCES) {
+        ASSERT_TRUE(c.twin.node->setErrorTolerance(tolerance));
+        chosen.push_back(examiner.samples());
+    }
+    const std::vector<Best> best = findBest(c, examiner);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        // Where none of the fixed choices does, nothing is too much.
+        EXPECT_LE(chosen[i], 1.3 * best[i].samples)
+            << describe(c, TOLERANCES[i]) << ": " << best[i].way << " with a period of "
+            << best[i].periodVoxel << " voxels takes " << best[i].samples << " samples";
+        std::ostringstream result;
+        result << c.table << "; " << c.field << "; chosen " << chosen[i] << "; best "
+               << best[i].samples << "; " << best[i].way << "; period " << best[i].periodVoxel;
+        RecordProperty("cost of case " + std::to_string(c.number) + ", tolerance " +
+                           std::to_string(TOLERANCES[i]),
+                       result.str());
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, PromiseCost,
+                         ::testing::Values(0, 7, 15, 28, 29, 66, 71, 89, 103, 106, 140, 192));
+
+} // namespace
+
+} // namespace PromiseTest
