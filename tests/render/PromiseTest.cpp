@@ -3,6 +3,7 @@
 
 #include "PromiseCases.h"
 
+#include <support/Choices.h>
 #include <support/GLTest.h>
 #include <support/Instrumented.h>
 
@@ -98,6 +99,9 @@ TEST_P(Promise, IsKept)
         Examiner examiner(c);
         for (const double tolerance : TOLERANCES) {
             ASSERT_TRUE(c.twin.node->setErrorTolerance(tolerance));
+            EXPECT_LE(examiner.error(0), tolerance)
+                << describe(c, tolerance) << ", before a choice is made";
+            ASSERT_TRUE(support::waitForChoice(*c.twin.node));
             double worst = 0.0;
             for (std::size_t view = 0; view < examiner.viewCount(); ++view) {
                 const double error = examiner.error(view);
@@ -133,8 +137,12 @@ const Way WAYS[] = {{"after interpolation",
                      [](VolumeAppearance& node, double periodVoxel) {
                          applyLookup(node, VolumeAppearance::AFTER_INTERPOLATION, periodVoxel);
                      }},
-                    {"preintegrated", [](VolumeAppearance& node, double periodVoxel) {
+                    {"preintegrated",
+                     [](VolumeAppearance& node, double periodVoxel) {
                          applyLookup(node, VolumeAppearance::PREINTEGRATED, periodVoxel);
+                     }},
+                    {"cell by cell", [](VolumeAppearance& node, double periodVoxel) {
+                         applyLookup(node, VolumeAppearance::CELL_BY_CELL, periodVoxel);
                      }}};
 
 // What is found by trying everything.
@@ -178,6 +186,7 @@ TEST_P(PromiseCost, IsNearTheLeast)
     std::vector<double> chosen;
     for (const double tolerance : TOLERANCES) {
         ASSERT_TRUE(c.twin.node->setErrorTolerance(tolerance));
+        ASSERT_TRUE(support::waitForChoice(*c.twin.node));
         chosen.push_back(examiner.samples());
     }
     const std::vector<Best> best = findBest(c, examiner);

@@ -13,6 +13,7 @@ namespace core {
 namespace {
 
 constexpr double GAUSS = 0.21132486540518713; // (1 - 1/sqrt(3)) / 2
+constexpr double MOST_BITS = 1.0;             // of extinction in a piece
 
 // Value along a cell, from 0 to 1.
 struct Cubic
@@ -149,16 +150,17 @@ void CellRay::visitPieces(const IntervalTable& table, double longestVoxel, const
             const double last = cubic.at(end);
             const bool rises = last > cubic.at(s);
             while (s < end) {
-                const glm::dvec4 of(table.texels[std::size_t(interval)]);
                 double to = end;
-                const double corner = rises ? of.y : of.x;
+                const double corner = rises ? table.of(interval).y : table.of(interval).x;
                 const bool passes = rises ? last > corner : last < corner;
                 if (passes) {
                     const double here = cubic.at(s);
                     to = (rises ? here < corner : here > corner) ? cubic.find(corner, s, end) : s;
                 }
-                const bool isLong = to - s > longest;
-                if (isLong) to = s + longest;
+                const double thick = table.largestExtinction(interval) * length * _unitsPerVoxel;
+                const double most = std::min(longest, MOST_BITS / std::max(thick, 1e-300));
+                const bool isLong = to - s > most;
+                if (isLong) to = s + most;
                 if (to > s && !visit(cubic, s, to, length, interval)) return;
                 s = to;
                 if (passes && !isLong) interval += rises ? 1 : -1;

@@ -38,7 +38,8 @@ public:
     glm::dvec4 integrate(const ExtinctionTable& table, double periodVoxel,
                          double opaqueEnough) const;
     /// The same from pieces that end at faces of cells and where the value turns round or passes a
-    /// corner of the table, and are no longer than `longestVoxel`. Each takes two samples: see
+    /// corner of the table, and are no longer than `longestVoxel`, nor than what lets half of the
+    /// light through. Each takes two samples: see
     /// lightOfPiece().
     glm::dvec4 integrate(const IntervalTable& table, double longestVoxel,
                          double opaqueEnough) const;

@@ -7,6 +7,7 @@
 #include <glm/vec4.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,6 +23,7 @@ constexpr double DOUBT = 0.15;
 constexpr std::size_t FEWEST_SHOWN = 400;
 constexpr double VISIBLE = 1e-3; // opacity of a ray that shows something
 constexpr double TRUTH = 0.125;  // longest piece of what is taken for the truth, voxels
+constexpr double FINEST = 0.25;  // longest piece that may be chosen
 constexpr double LONGEST = 16.0, SHORTEST = 0.0625; // periods, voxels
 // Errors of few rays, and of steps that count along the view axis and not along the ray, are off by
 // this.
@@ -32,6 +34,10 @@ constexpr double FILTER_SHARE = 0.25;
 // What a step with integrals costs, in steps without; and a piece, where the table has corners
 // within its range, and where not.
 constexpr double INTEGRAL_COST = 1.25, CORNER_COST = 6.4, PIECE_COST = 1.9;
+// A picture has so many rays that differ: what it shows may be off by more than what many show.
+constexpr double VIEW = 400.0;
+// The rays of one direction tell of it as if so many average ones were among them.
+constexpr double FEW = 30.0;
 // Floats and the texture units of a card, which take no part in this.
 constexpr double LEAST_ERROR = 2e-6;
 
@@ -39,6 +45,7 @@ constexpr double LEAST_ERROR = 2e-6;
 struct ShownRay
 {
     const CellRay* ray;
+    std::size_t direction;
     glm::dvec4 light; ///< premultiplied
 };
 
@@ -48,10 +55,11 @@ class Judge
 public:
     Judge(const PeriodQuestion& question, const std::vector<CellRay>& rays) : _question(question)
     {
-        for (const CellRay& ray : rays) {
-            const double rough = ray.integrate(*question.table, LONGEST, VISIBLE).a;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const double rough = rays[i].integrate(*question.table, LONGEST, VISIBLE).a;
             if (!(rough > VISIBLE)) continue;
-            _rays.push_back({&ray, ray.integrate(*question.table, TRUTH, 0.0)});
+            _rays.push_back({&rays[i], i % RandomRays::DIRECTIONS,
+                             rays[i].integrate(*question.exact, TRUTH, 0.0)});
         }
         _doubts = _rays.size() < FEWEST_SHOWN;
     }
@@ -60,23 +68,30 @@ public:
     // Whether errors that decided were uncertain.
     bool doubts() const { return _doubts; }
 
-    // Root mean square error, at the upper end of what so few rays leave uncertain: where a few
-    // rays have all the error, as with jumps in the table, that is much more than what they happen
-    // to show.
+    // Root mean square error of a view, at the upper end of what so few rays leave uncertain: where
+    // a few rays have all the error, as with jumps in the table, that is much more than what they
+    // happen to show.
     double error(RayRule rule, double periodVoxel)
     {
         double sum = 0.0, squares = 0.0;
+        std::array<double, RandomRays::DIRECTIONS> sums{}, counts{};
         for (const ShownRay& shown : _rays) {
             const glm::dvec4 d = integrate(*shown.ray, rule, periodVoxel) - shown.light;
             const double square = 0.25 * glm::dot(d, d);
             sum += square;
             squares += square * square;
+            sums[shown.direction] += square;
+            counts[shown.direction] += 1.0;
         }
         if (_rays.empty()) return 0.0;
         const auto count = static_cast<double>(_rays.size());
         const double mean = sum / count;
-        const double deviation = std::sqrt(std::max(squares / count - mean * mean, 0.0) / count);
-        const double upper = SAFETY * std::sqrt(mean + 2.0 * deviation) + LEAST_ERROR;
+        const double ofRay = std::sqrt(std::max(squares / count - mean * mean, 0.0));
+        const double deviation = ofRay / std::sqrt(count);
+        double worst = mean + 2.0 * ofRay * std::sqrt(1.0 / count + 1.0 / VIEW);
+        for (std::size_t i = 0; i < sums.size(); ++i)
+            worst = std::max(worst, (sums[i] + FEW * mean) / (counts[i] + FEW));
+        const double upper = SAFETY * std::sqrt(worst) + LEAST_ERROR;
         if (deviation > DOUBT * mean && upper > _question.tolerance &&
             SAFETY * std::sqrt(mean) < _question.tolerance)
             _doubts = true;
@@ -130,7 +145,7 @@ Candidate cellsFor(const PeriodQuestion& q, Judge& judge)
     Candidate candidate;
     candidate.choice.rule = RayRule::CELLS;
     const bool corners = q.table->intervals > 3;
-    for (double longest = PeriodChoice::ONE_PIECE; longest > 0.9 * TRUTH; longest *= 0.5) {
+    for (double longest = PeriodChoice::ONE_PIECE; longest > 0.9 * FINEST; longest *= 0.5) {
         candidate.choice.periodVoxel = longest;
         candidate.choice.error = judge.error(RayRule::CELLS, longest);
         candidate.keeps = candidate.choice.error <= q.tolerance;

@@ -48,7 +48,8 @@ struct PeriodQuestion
     double tolerance = 1e-3;              ///< root mean square error
     ExtinctionTable midpoints;            ///< a table without integrals; may be empty
     ExtinctionTable integrals;            ///< the same table with them; may be empty
-    const IntervalTable* table = nullptr; ///< the same table; also tells what is true
+    const IntervalTable* table = nullptr; ///< the same table, as RayRule::CELLS takes it
+    const IntervalTable* exact = nullptr; ///< the same table, cut at all of its points
     bool cells = true;                    ///< whether RayRule::CELLS may be chosen
     double opaqueEnough = 0.0;            ///< what is left of the light where rays end
 };
@@ -63,9 +64,9 @@ struct PeriodAnswer
 /// The cheapest rule, with the longest period from 1/16 to 16 voxels, whose error is within a
 /// tolerance; where none is, the one with the least. Found by integrating rays, random ones through
 /// the box of what shows something, so it holds whatever the view: the truth of each is what cells
-/// give in pieces of an eighth of a voxel. The same question always has the same answer. Takes
-/// about a tenth of a second for a thousand rays of a hundred voxels. Expects a table and a rule
-/// that may be chosen. Where no ray shows anything the longest period.
+/// give in pieces of an eighth of a voxel, and of the exact table. The same question always has the
+/// same answer. Takes about a tenth of a second for a thousand rays of a hundred voxels. Expects
+/// both tables and a rule that may be chosen. Where no ray shows anything the longest period.
 OSGVOLUMIZER_CORE_EXPORT PeriodAnswer choosePeriod(const PeriodQuestion& question,
                                                    const std::vector<CellRay>& rays);
 

@@ -1,5 +1,6 @@
 #include "RandomRays.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
@@ -10,7 +11,7 @@ namespace osgVolumizer {
 namespace core {
 
 RandomRays::RandomRays(const Box3d& box, const glm::dmat3& voxelToUnits, bool nearest)
-    : _box(box), _voxelToUnits(voxelToUnits), _nearest(nearest)
+    : _box(box), _samples(box), _voxelToUnits(voxelToUnits), _nearest(nearest)
 {
     // A plane of samples has rays, too.
     constexpr double LEAST = 1e-3;
@@ -23,8 +24,12 @@ CellRay RandomRays::next(const FractionField& field)
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     const auto random = [&]() { return unit(_random); };
     const double radius = 0.5 * glm::length(_box.size());
+    constexpr double COUNT = DIRECTIONS, GOLDEN = 2.399963229728653; // angle between neighbours
+    const auto i = static_cast<double>(_count++ % DIRECTIONS);
     for (;;) {
-        const double z = 2.0 * random() - 1.0, phi = glm::two_pi<double>() * random();
+        // A spiral from the equator to a pole, and not farther from it than half a view is wide.
+        const double z = std::clamp((i + 0.5) / COUNT + 0.2 * (random() - 0.5), -1.0, 1.0);
+        const double phi = GOLDEN * i + 0.4 * (random() - 0.5);
         const double s = std::sqrt(1.0 - z * z);
         const glm::dvec3 direction(s * std::cos(phi), s * std::sin(phi), z);
         const glm::dvec3 side = glm::normalize(
@@ -42,7 +47,10 @@ CellRay RandomRays::next(const FractionField& field)
         }
         if (!(leave - enter > 1e-6 * radius)) continue;
         const glm::dvec3 begin = point + enter * direction, end = point + leave * direction;
-        return CellRay(field, begin, end, glm::length(_voxelToUnits * (end - begin)), _nearest);
+        const FractionField held = [this, &field](const glm::dvec3& p) {
+            return field(glm::clamp(p, _samples.min, _samples.max));
+        };
+        return CellRay(held, begin, end, glm::length(_voxelToUnits * (end - begin)), _nearest);
     }
 }
 

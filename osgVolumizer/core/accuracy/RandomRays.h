@@ -6,16 +6,20 @@
 
 #include <glm/mat3x3.hpp>
 
+#include <cstddef>
 #include <random>
 
 namespace osgVolumizer {
 namespace core {
 
-/// Uniform lines through a box: as many of each direction as an orthographic view has pixels. The
+/// Lines through a box: as many of each direction as an orthographic view has pixels. Directions
+/// come in turn, ray i of direction i % DIRECTIONS, but for a few degrees, as within a view. The
 /// sequence is always the same.
 class OSGVOLUMIZER_CORE_EXPORT RandomRays
 {
 public:
+    static constexpr std::size_t DIRECTIONS = 16; ///< spread evenly
+
     /// Expects a box (voxel frame) that is not empty.
     /// \param voxelToUnits a vector of the voxel frame -> opacity units
     RandomRays(const Box3d& box, const glm::dmat3& voxelToUnits, bool nearest);
@@ -24,10 +28,11 @@ public:
     CellRay next(const FractionField& field);
 
 private:
-    Box3d _box;
+    Box3d _box, _samples; ///< a little larger than what has samples, and that
     glm::dmat3 _voxelToUnits;
     bool _nearest;
     std::mt19937 _random{7};
+    std::size_t _count = 0;
 };
 
 } // namespace core

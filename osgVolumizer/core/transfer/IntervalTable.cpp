@@ -158,7 +158,7 @@ int IntervalTable::find(double value) const
     int low = 0, high = intervals - 1;
     while (low < high) {
         const int middle = (low + high + 1) / 2;
-        if (value < double(texels[std::size_t(middle)].x))
+        if (value < double(of(middle).x))
             high = middle - 1;
         else
             low = middle;
@@ -168,8 +168,8 @@ int IntervalTable::find(double value) const
 
 glm::dvec4 IntervalTable::at(int interval, double value) const
 {
-    const glm::dvec4 of(texels[std::size_t(interval)]);
-    const double entry = of.z + std::max(std::clamp(value, of.x, of.y) - of.x, 0.0) * of.w;
+    const glm::dvec4 in(of(interval));
+    const double entry = in.z + std::max(std::clamp(value, in.x, in.y) - in.x, 0.0) * in.w;
     const auto i = std::min(static_cast<std::size_t>(entry), texels.size() - 2);
     return glm::mix(glm::dvec4(texels[i]), glm::dvec4(texels[i + 1]), entry - double(i));
 }
@@ -180,27 +180,19 @@ IntervalTable makeIntervalTable(const TransferFunction& function, double sharpne
     const std::vector<Interval> intervals = cutAtCorners(points, sharpness);
     IntervalTable table;
     table.intervals = static_cast<int>(intervals.size());
-    table.texels.resize(intervals.size());
+    table.texels.resize(2 * intervals.size());
     for (std::size_t k = 0; k < intervals.size(); ++k) {
         const Interval& interval = intervals[k];
         const std::vector<glm::dvec4> colors = enoughEntries(points, interval);
         const double width = interval.high - interval.low;
-        table.texels[k] = glm::vec4(interval.low, interval.high, double(table.texels.size()),
-                                    (double(colors.size()) - 1.0) / width);
+        table.texels[2 * k] = glm::vec4(interval.low, interval.high, double(table.texels.size()),
+                                        (double(colors.size()) - 1.0) / width);
+        for (const glm::dvec4& color : colors)
+            table.texels[2 * k + 1].x = std::max(table.texels[2 * k + 1].x, float(color.a));
         table.texels.insert(table.texels.end(), colors.begin(), colors.end());
     }
     table.texels.push_back(table.texels.back());
     return table;
-}
-
-bool IntervalTable::showsNothing(int interval) const
-{
-    const auto first = static_cast<std::size_t>(texels[std::size_t(interval)].z);
-    const auto end = interval + 1 < intervals
-                         ? static_cast<std::size_t>(texels[std::size_t(interval) + 1].z)
-                         : texels.size();
-    return std::all_of(texels.begin() + std::ptrdiff_t(first), texels.begin() + std::ptrdiff_t(end),
-                       [](const glm::vec4& t) { return t.a == 0.0f; });
 }
 
 } // namespace core

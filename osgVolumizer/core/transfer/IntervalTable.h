@@ -5,6 +5,7 @@
 
 #include <glm/vec4.hpp>
 
+#include <cstddef>
 #include <vector>
 
 namespace osgVolumizer {
@@ -15,9 +16,9 @@ namespace core {
 /// functions.
 struct OSGVOLUMIZER_CORE_EXPORT IntervalTable
 {
-    /// First `intervals` texels, from low values to high ones without gaps: the interval's first
+    /// First two texels for each interval, from low values to high ones without gaps: its first
     /// and last value (the first of all and the last of all far away), the index of its first
-    /// entry, and entries per value. Then entries, equally spaced in each interval with one at
+    /// entry, and entries per value; its largest extinction. Then entries, equally spaced in each interval with one at
     /// either end, and one more: colour, and extinction in bits (-log2 of transmittance) per
     /// opacity unit, both to be interpolated linearly.
     std::vector<glm::vec4> texels;
@@ -30,8 +31,13 @@ struct OSGVOLUMIZER_CORE_EXPORT IntervalTable
     int find(double value) const;
     /// Colour and extinction at a value, which is held to the interval.
     glm::dvec4 at(int interval, double value) const;
-    /// Whether all of an interval shows nothing.
-    bool showsNothing(int interval) const;
+    /// An interval's first texel.
+    const glm::vec4& of(int interval) const { return texels[2 * std::size_t(interval)]; }
+    /// Its largest extinction, bits per opacity unit.
+    double largestExtinction(int interval) const
+    {
+        return double(texels[2 * std::size_t(interval) + 1].x);
+    }
 };
 
 /// Corners are jumps, and kinks where the slope of opacity, or of opacity times colour, changes by

@@ -146,11 +146,12 @@ struct SamplingChoices::Answer
     // Never changed:
     std::vector<glm::vec4> midpoints, integrals;
     std::shared_ptr<const core::IntervalTable> table;
+    LookupTable::Function function;
     core::PeriodQuestion question;
 
     explicit Answer(const SamplingQuestion& q)
         : midpoints(texelsOf(q.midpoints)), integrals(texelsOf(q.integrals)),
-          table(q.intervals.intervals)
+          table(q.intervals.intervals), function(q.intervals.function)
     {
         question.tolerance = q.tolerance;
         question.opaqueEnough = q.opaqueEnough;
@@ -185,7 +186,10 @@ private:
 // Another thread's part.
 void decide(SamplingChoices::Answer& answer, const Rays& rays, bool mayGrow)
 {
-    const core::PeriodAnswer found = core::choosePeriod(answer.question, rays);
+    const core::IntervalTable exact = core::makeIntervalTable(*answer.function, 0.0);
+    core::PeriodQuestion question = answer.question;
+    question.exact = &exact;
+    const core::PeriodAnswer found = core::choosePeriod(question, rays);
     std::lock_guard<std::mutex> lock(answer.mutex);
     answer.choice = found.choice;
     answer.choice.filterError = answer.filterError;

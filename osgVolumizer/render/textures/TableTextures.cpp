@@ -94,7 +94,7 @@ void countShown(const std::vector<glm::vec4>& texels, TableTexture& table)
 }
 
 // Kinks that are not sharper are left to Gauss's rule: see core::makeIntervalTable().
-constexpr double SHARP = 1.0;
+constexpr double SHARP = 0.03;
 
 std::shared_ptr<TableTexture> makeIntervals(const LookupTable& table, const osg::Vec2d& range)
 {
@@ -105,7 +105,7 @@ std::shared_ptr<TableTexture> makeIntervals(const LookupTable& table, const osg:
     made->count = 2;
     auto shown = std::make_shared<std::vector<int>>(1, 0);
     for (int i = 0; i < intervals->intervals; ++i)
-        shown->push_back(shown->back() + !intervals->showsNothing(i));
+        shown->push_back(shown->back() + (intervals->largestExtinction(i) > 0.0));
     made->shownEntries = std::move(shown);
     made->texture = makeTexture(intervals->texels);
     made->intervals = std::move(intervals);

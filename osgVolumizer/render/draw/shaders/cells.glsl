@@ -8,12 +8,24 @@ uniform float longestPiece; // depth
 uniform float stride;       // more than 1: all voxels have one value
 
 #define MOST_PIECES 1048576
+// In the time that steps take for as many samples: see core/accuracy/PeriodChoice.
+#ifndef COUNT_SAMPLES
+#define COUNT_PIECE
+#elif defined(CORNERS)
+#define COUNT_PIECE sampleCount += 6.4;
+#else
+#define COUNT_PIECE sampleCount += 1.9;
+#endif
+#define MOST_BITS 1.0 // of extinction in a piece
 
 // The ray in the frame of the brick's samples: cellStart + t * cellRate; and as places.
 vec3 cellStart, cellRate, cellInverse, cellStep;
 vec3 startPlace, placesPerDepth;
 vec3 cellFace; // coordinates of the faces that it meets next
 float cellBegin, cellEnd; // depths
+
+// Of a piece in the interval at hand, depth.
+float longestPart(float unitsPerDepth) { return min(longestPiece, MOST_BITS / max(mostExtinction * unitsPerDepth, 1e-30)); }
 
 vec3 cellPlace(float t) { return startPlace + t * placesPerDepth; }
 float fractionAt(float t) { return voxelAt(cellPlace(t)) * valueToEntry.x + valueToEntry.y; }
@@ -110,7 +122,6 @@ void enterCell(float end)
     roots = mix(vec2(1.0), roots, lessThan(abs(roots - 0.5), vec2(0.5)));
     turns = discriminant > 0.0 ? vec2(min(roots.x, roots.y), max(roots.x, roots.y)) : vec2(1.0);
 #endif
-    COUNT_SAMPLE
 }
 
 float cubicAt(float s) { return cubic.x + s * (cubic.y + s * (cubic.z + s * cubic.w)); }
@@ -123,7 +134,7 @@ float cubicRoot(float value, float low, float atLow, float high, float atHigh)
     // On a parabola that agrees in both ends' values, and in the slope at the first.
     float bend = (atHigh - atLow - slope * h) / (h * h);
     float s = low + 2.0 * rest / (slope + rising * sqrt(max(slope * slope + 4.0 * bend * rest, 0.0)));
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < 6; ++i) {
         s = s >= low && s <= high ? s : 0.5 * (low + high);
         float off = cubicAt(s) - value;
         bool beyond = off * rising > 0.0;
@@ -134,8 +145,8 @@ float cubicRoot(float value, float low, float atLow, float high, float atHigh)
     return s >= low && s <= high ? s : 0.5 * (low + high);
 }
 
-// Finds the end of the piece at hand.
-void findPieceEnd()
+// Finds the end of the piece at hand, which is no longer than a length.
+void findPieceEnd(float mostLength)
 {
     pieceEnd = piece < turns.x ? turns.x : piece < turns.y ? turns.y : 1.0;
     float here = cubicAt(piece), last = pieceEnd < 1.0 ? cubicAt(pieceEnd) : valueAtEnd;
@@ -145,7 +156,7 @@ void findPieceEnd()
     bool before = rises ? here < corner : here > corner;
     float root = cubicRoot(corner, piece, here, pieceEnd, last);
     pieceEnd = passesCorner ? (before ? root : piece) : pieceEnd;
-    float longest = piece + longestPiece / max(cellEnd - cellBegin, 1e-30);
+    float longest = piece + mostLength / max(cellEnd - cellBegin, 1e-30);
     passesCorner = passesCorner && pieceEnd <= longest;
     pieceEnd = min(pieceEnd, longest);
 }
@@ -185,12 +196,13 @@ void cutStep(float t, inout float end)
 #ifdef CORNERS
         leavePiece();
         if (piece >= 1.0) enterCell(shown.y);
-        findPieceEnd();
+        findPieceEnd(longestPart(unitsPerDepth));
         pieceDepth = pieceEnd < 1.0 ? mix(cellBegin, cellEnd, pieceEnd) : cellEnd;
+        COUNT_PIECE
 #else
-        passCell(min(shown.y, cellEnd + longestPiece));
+        passCell(min(shown.y, cellEnd + longestPart(unitsPerDepth)));
         pieceDepth = cellEnd;
-        COUNT_SAMPLE
+        COUNT_PIECE
 #endif
     }
     end = min(end, within ? pieceDepth : t < shown.x ? shown.x : 1e30);
@@ -266,24 +278,25 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     // One loop for both: on llvmpipe bodies of inner loops are run once more than any ray wants.
     for (int i = 0; i < MOST_PIECES && (piece < 1.0 || cellEnd < end) && light.a < 1.0 - opaqueEnough; ++i) {
         if (piece >= 1.0) enterCell(end);
-        findPieceEnd();
+        findPieceEnd(longestPart(unitsPerDepth));
         float part = pieceEnd - piece, length = cellEnd - cellBegin;
         vec2 values = vec2(cubicAt(piece + GAUSS * part), cubicAt(pieceEnd - GAUSS * part));
         addPiece(origin, direction, values, cellBegin + piece * length, cellBegin + pieceEnd * length,
                  unitsPerDepth, light);
         leavePiece();
+        COUNT_PIECE
     }
 #else
     takeInterval(1); // between those of values beyond the table
     for (int i = 0; i < MOST_PIECES && cellEnd < end && light.a < 1.0 - opaqueEnough; ++i) {
-        passCell(min(end, cellEnd + longestPiece));
+        passCell(min(end, cellEnd + longestPart(unitsPerDepth)));
         float length = cellEnd - cellBegin;
 #ifdef NEAREST
         vec2 values = vec2(fractionAt(0.5 * (cellBegin + cellEnd)));
 #else
         vec2 values = fractionsAt(vec3(cellBegin + GAUSS * length, cellEnd - GAUSS * length, cellEnd)).xy;
 #endif
-        COUNT_SAMPLE
+        COUNT_PIECE
         addPiece(origin, direction, values, cellBegin, cellEnd, unitsPerDepth, light);
     }
 #endif

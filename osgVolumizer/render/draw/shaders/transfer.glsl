@@ -10,10 +10,13 @@ uniform int intervals;
 int interval;
 vec4 inInterval; // first and last value, first entry, entries per value
 
+float mostExtinction;
+
 void takeInterval(int i)
 {
     interval = i;
-    inInterval = texelFetch(lookupTable, i);
+    inInterval = texelFetch(lookupTable, 2 * i);
+    mostExtinction = texelFetch(lookupTable, 2 * i + 1).r;
 }
 
 void findInterval(float value)
@@ -21,7 +24,7 @@ void findInterval(float value)
     int low = 0, high = intervals - 1;
     for (int i = 0; i < 24 && low < high; ++i) {
         int middle = (low + high + 1) / 2;
-        bool below = value < texelFetch(lookupTable, middle).r;
+        bool below = value < texelFetch(lookupTable, 2 * middle).r;
         low = below ? low : middle;
         high = below ? middle - 1 : high;
     }
