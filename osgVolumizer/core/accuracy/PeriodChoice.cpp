@@ -24,10 +24,9 @@ constexpr std::size_t FEWEST_SHOWN = 400;
 constexpr double VISIBLE = 1e-3; // opacity of a ray that shows something
 constexpr double TRUTH = 0.125;  // longest piece of what is taken for the truth, voxels
 constexpr double FINEST = 0.25;  // longest piece that may be chosen
-constexpr double LONGEST = 16.0, SHORTEST = 0.0625; // periods, voxels
-// Errors of few rays, and of steps that count along the view axis and not along the ray, are off by
-// this.
-constexpr double SAFETY = 1.35;
+constexpr double LONGEST = 8.0, SHORTEST = 0.0625; // periods, voxels
+// Errors of few rays, in few directions, are off by this.
+constexpr double SAFETY = 1.5;
 // The part of a tolerance that filtering may take. Squares of errors add, so that it is within what
 // SAFETY leaves.
 constexpr double FILTER_SHARE = 0.25;

@@ -61,7 +61,7 @@ struct PeriodAnswer
     bool wantsMore = false;
 };
 
-/// The cheapest rule, with the longest period from 1/16 to 16 voxels, whose error is within a
+/// The cheapest rule, with the longest period from 1/16 to 8 voxels, whose error is within a
 /// tolerance; where none is, the one with the least. Found by integrating rays, random ones through
 /// the box of what shows something, so it holds whatever the view: the truth of each is what cells
 /// give in pieces of an eighth of a voxel, and of the exact table. The same question always has the

@@ -115,8 +115,10 @@ bool setMarched(const FusedDrawing& drawing, const FusedMember& member, const Un
             !setTetrahedra(*drawing.renderInfo.getState(), uniforms, look, first))
             return false;
     }
-    if (!drawing.part.features.inOrder && isHomogeneous(member))
+    if (!drawing.part.features.inOrder && isHomogeneous(member)) {
         uniforms.set("stepsPerDepth", 0.0f);
+        uniforms.set("stepsPerLength", 0.0f);
+    }
     return setBatch(batch, member.batch);
 }
 

@@ -202,6 +202,8 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     look->referenceDepth = -(toEye * glm::dvec4(look->center, 1.0)).z;
     look->step =
         sampleDepth(toEye, prepared.regionBox, volume.sampling, volume.keepsError, visitor);
+    if (volume.keepsError && prepared.voxelFrame)
+        look->stepsPerLength = 1.0 / volume.sampling.periodVoxel.x;
     look->maximumSteps = volume.sampling.maximumSamples + 2;
     look->voxelsPerSample = voxelsPerDepth(toEye, volume.sampling) * look->step;
     if (visitor.getState()) features.filterBits = filterBitsOf(*visitor.getState());

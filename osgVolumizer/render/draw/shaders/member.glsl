@@ -36,12 +36,13 @@ vec2 findRegion(float tNear, float tFar, inout vec2 all)
 void findPart(float tNear, float tFar, inout vec2 all)
 {
     vec2 region = findRegion(tNear, tFar, all);
-    period = 1.0 / stepsPerDepth;
+    float perDepth = stepsOn(memberDirection);
+    period = 1.0 / perDepth;
 #ifdef TETRAHEDRA
     segment = shown;
 #else
-    vec2 steps = (shown - region.x) * stepsPerDepth;
-    segment = stepsPerDepth > 0.0 ? min(region.x + vec2(floor(steps.x), ceil(steps.y)) * period, region.yy) : shown;
+    vec2 steps = (shown - region.x) * perDepth;
+    segment = perDepth > 0.0 ? min(region.x + vec2(floor(steps.x), ceil(steps.y)) * period, region.yy) : shown;
 #ifdef PREINTEGRATED
     // The ends of steps are where the table is asked.
     vec2 texels = boxSegment(brickMin, brickMax, memberOrigin, memberDirection);

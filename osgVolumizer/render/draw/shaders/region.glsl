@@ -9,6 +9,7 @@ uniform vec4 planes[PLANES];
 uniform vec3 brickMin, brickMax; // what the brick's texture has values for
 #endif
 uniform float stepsPerDepth;
+uniform float stepsPerLength; // of the frame, along each ray, where an error is kept; else 0
 uniform float maximumSteps;
 
 // The part of the ray in the volume's region.
@@ -21,10 +22,13 @@ vec2 regionSegment(vec3 origin, vec3 direction)
     return ends;
 }
 
+// Steps per depth on a ray.
+float stepsOn(vec3 direction) { return stepsPerLength > 0.0 ? stepsPerLength * length(direction) : stepsPerDepth; }
+
 // Number of steps for a segment, such that their mean over all segments is the period.
-float stepsOf(float tNear, float tFar)
+float stepsOf(vec3 direction, float tNear, float tFar)
 {
-    return clamp(floor((tFar - tNear) * stepsPerDepth + 0.5), 1.0, maximumSteps);
+    return clamp(floor((tFar - tNear) * stepsOn(direction) + 0.5), 1.0, maximumSteps);
 }
 
 #ifdef SHADING

@@ -122,7 +122,7 @@ void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float
 // of steps are where the table is asked, so steps are cut at the brick's ends.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
 {
-    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
+    float count = stepsOf(direction, tNear, tFar), dt = (tFar - tNear) / count;
     vec2 brick = boxSegment(brickMin, brickMax, VOXEL_RAY(origin, direction));
     float start = max(tNear, brick.x), stop = min(tFar, brick.y);
 #ifdef SKIPPING
@@ -164,7 +164,7 @@ uniform float stride; // steps taken as one: see BrickBatch
 // Light of the brick's steps, front to back: premultiplied colour, opacity.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
-    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
+    float count = stepsOf(direction, tNear, tFar), dt = (tFar - tNear) / count;
 #ifdef SKIPPING
     brick = occupiedPart(VOXEL_RAY(origin, direction), max(tNear, brick.x), min(tFar, brick.y));
 #endif

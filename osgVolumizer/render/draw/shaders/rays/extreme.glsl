@@ -11,7 +11,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
     tNear = max(tNear, brick.x);
     tFar = min(tFar, brick.y);
-    float count = stepsOf(tNear, tFar);
+    float count = stepsOf(direction, tNear, tFar);
     vec3 place = placeOnRay(origin, direction, tNear);
     vec3 rate = VOXEL_RATE(direction) * ((tFar - tNear) / count);
     float dt = (tFar - tNear) / count;
@@ -39,7 +39,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
     tNear = max(tNear, brick.x);
     tFar = min(tFar, brick.y);
-    float count = stepsOf(tNear, tFar);
+    float count = stepsOf(direction, tNear, tFar);
     vec3 start = placeOnRay(origin, direction, tNear);
     vec3 rate = VOXEL_RATE(direction) * ((tFar - tNear) / count);
     vec3 place = start + rate;

@@ -8,7 +8,7 @@
 // Integral of the value over the brick's steps, and of 1.
 vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 {
-    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
+    float count = stepsOf(direction, tNear, tFar), dt = (tFar - tNear) / count;
     float first = max(0.0, ceil((brick.x - tNear) / dt - 0.5));
     int steps = int(min(count, ceil((brick.y - tNear) / dt - 0.5)) - first);
     vec3 place = placeOnRay(origin, direction, tNear + (first + 0.5) * dt);

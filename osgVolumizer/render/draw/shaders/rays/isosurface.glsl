@@ -37,7 +37,7 @@ float crossing(vec3 origin, vec3 direction, float tNear, float tFar, vec2 part)
 {
     tNear = max(tNear, part.x);
     tFar = min(tFar, part.y);
-    float count = stepsOf(tNear, tFar), dt = (tFar - tNear) / count;
+    float count = stepsOf(direction, tNear, tFar), dt = (tFar - tNear) / count;
     vec3 start = placeOnRay(origin, direction, tNear), rate = VOXEL_RATE(direction) * dt;
     float i = 0.0, last = count;
 #ifdef SKIPPING
