@@ -1,18 +1,12 @@
-#include "ExtinctionTexels.h"
+#include "TableFixture.h"
 
 #include <osgVolumizer/core/accuracy/PeriodChoice.h>
-#include <osgVolumizer/core/accuracy/RaySamples.h>
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
-#include <glm/vec3.hpp>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <random>
-#include <vector>
 
 namespace PeriodChoiceTest {
 
@@ -20,149 +14,170 @@ using namespace osgVolumizer::core;
 
 namespace {
 
-constexpr int TABLE_SIZE = 16384;
-
-std::vector<glm::vec4> makeTable(const std::function<double(double)>& extinctionBits)
-{
-    return extinctionTexels(TABLE_SIZE, {1.0f, 0.5f, 0.25f}, extinctionBits);
-}
-
-PeriodQuestion question(const std::vector<glm::vec4>& texels, double tolerance)
-{
-    PeriodQuestion q;
-    q.tolerance = tolerance;
-    q.midpoints = {texels.data(), TABLE_SIZE, false};
-    q.integrals = {texels.data(), TABLE_SIZE, true};
-    q.box = {glm::dvec3(0.0), glm::dvec3(32.0)};
-    return q;
-}
+const Box3d BOX{glm::dvec3(0.0), glm::dvec3(32.0)};
 
 double waves(const glm::dvec3& p)
 {
     return 0.5 + 0.4 * std::sin(0.5 * p.x) * std::cos(0.4 * p.y + 0.2 * p.z);
 }
 
-// The part of a line in the box, as two points; false where it misses.
-bool clip(const Box3d& box, glm::dvec3& a, glm::dvec3& b)
+// What is interpolated linearly between samples at whole numbers, as voxels are.
+double voxels(const glm::dvec3& p)
 {
-    const glm::dvec3 from = a, way = b - a;
-    double enter = 0.0, leave = 1.0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double low = (box.min[axis] - from[axis]) / way[axis];
-        const double high = (box.max[axis] - from[axis]) / way[axis];
-        enter = std::max(enter, std::min(low, high));
-        leave = std::min(leave, std::max(low, high));
+    const glm::dvec3 low = glm::min(glm::floor(p), glm::dvec3(31.0)), f = p - low;
+    double sum = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 step(i & 1, (i >> 1) & 1, i >> 2);
+        const glm::dvec3 w = glm::mix(1.0 - f, f, step);
+        sum += w.x * w.y * w.z * waves(low + step);
     }
-    a = from + enter * way;
-    b = from + leave * way;
-    return enter < leave;
+    return sum;
 }
 
-// Error of a period over rays of our own: chords between random points of a sphere around the box
-// are uniform lines.
-double errorOf(const FractionField& field, const PeriodQuestion& q, const PeriodChoice& choice,
-               double stretch)
+PeriodChoice choose(const PeriodQuestion& question, const FractionField& field = voxels)
 {
-    constexpr int SAMPLES_PER_VOXEL = 24;
+    return choosePeriod(question, field, BOX, glm::dmat3(1.0), false);
+}
+
+// Root mean square error over rays of our own: chords between random points of a sphere around the
+// box are uniform lines.
+double errorOf(const PeriodQuestion& q, const PeriodChoice& choice, double stretch)
+{
     std::mt19937 random(99);
     std::normal_distribution<double> normal;
     const auto onSphere = [&]() {
         const glm::dvec3 direction(normal(random), normal(random), normal(random));
-        return q.box.center() + 0.5 * glm::length(q.box.size()) * glm::normalize(direction);
+        return BOX.center() + 0.5 * glm::length(BOX.size()) * glm::normalize(direction);
     };
-    const ExtinctionTable& table = choice.integrals ? q.integrals : q.midpoints;
     double sum = 0.0;
     int rays = 0;
     while (rays < 1000) {
-        glm::dvec3 a = onSphere(), b = onSphere();
-        if (!clip(q.box, a, b)) continue;
+        const glm::dvec3 a = onSphere(), way = onSphere() - a;
+        const glm::dvec3 s = (BOX.min - a) / way, t = (BOX.max - a) / way;
+        const glm::dvec3 low = glm::min(s, t), high = glm::max(s, t);
+        const double enter = std::max({low.x, low.y, low.z}),
+                     leave = std::min({high.x, high.y, high.z});
+        if (!(leave > enter)) continue;
         ++rays;
-        const int intervals = std::max(int(glm::length(b - a) * SAMPLES_PER_VOXEL), 2);
-        RaySamples samples;
-        samples.unitsPerInterval = glm::length(b - a) / intervals;
-        for (int k = 0; k <= intervals; ++k)
-            samples.values.push_back(float(field(a + (b - a) * (double(k) / intervals))));
-        const glm::dvec4 d =
-            samples.integrate(table, stretch * choice.periodVoxel * SAMPLES_PER_VOXEL) -
-            samples.integrate(q.midpoints, 1.0);
+        const FractionField held = [](const glm::dvec3& p) {
+            return voxels(glm::clamp(p, BOX.min, BOX.max));
+        };
+        const CellRay ray(held, a + enter * way, a + leave * way,
+                          (leave - enter) * glm::length(way), false);
+        const double period = stretch * choice.periodVoxel;
+        const glm::dvec4 light =
+            choice.rule == RayRule::CELLS       ? ray.integrate(*q.table, period, 0.0)
+            : choice.rule == RayRule::INTEGRALS ? ray.integrate(q.integrals, period, 0.0)
+                                                : ray.integrate(q.midpoints, period, 0.0);
+        const glm::dvec4 d = light - ray.integrate(*q.exact, 0.1, 0.0);
         sum += 0.25 * glm::dot(d, d);
     }
     return std::sqrt(sum / rays);
 }
 
+double square(double v)
+{
+    return 0.2 * v * v;
+}
+
 } // namespace
 
-TEST(PeriodChoice, WhatIsUniformNeedsOneSample)
+TEST(PeriodChoice, WhatIsUniformNeedsFewSamples)
 {
-    const auto texels = makeTable([](double) { return 0.05; });
-    const PeriodChoice choice =
-        choosePeriod([](const glm::dvec3&) { return 0.5; }, question(texels, 1e-4));
-    EXPECT_EQ(choice.periodVoxel, 16.0);
-    EXPECT_FALSE(choice.integrals); // the cheaper table
-    EXPECT_LE(choice.error, 1e-7);
+    const TableForms table(opacityPoints(2, [](double) { return 0.05; }));
+    const PeriodChoice choice = choose(table.question(1e-4), [](const glm::dvec3&) { return 0.5; });
+    EXPECT_EQ(choice.periodVoxel, 8.0);
+    EXPECT_EQ(choice.rule, RayRule::MIDPOINTS); // the cheapest
+    EXPECT_LE(choice.error, 1e-5);
 }
 
 TEST(PeriodChoice, KeepsTheToleranceAndWastesLittle)
 {
-    const auto texels = makeTable([](double v) { return 0.3 * v * v; });
+    const TableForms table(opacityPoints(65, square));
     for (const double tolerance : {4e-3, 1e-3, 2e-4}) {
-        const PeriodQuestion q = question(texels, tolerance);
-        const PeriodChoice choice = choosePeriod(waves, q);
+        const PeriodQuestion q = table.question(tolerance);
+        const PeriodChoice choice = choose(q);
         EXPECT_LE(choice.error, tolerance);
-        EXPECT_LE(errorOf(waves, q, choice, 1.0), tolerance);
-        EXPECT_GT(errorOf(waves, q, choice, 1.6), tolerance);
+        EXPECT_LE(errorOf(q, choice, 1.0), tolerance);
+        EXPECT_GT(errorOf(q, choice, 2.0), tolerance);
     }
 }
 
 TEST(PeriodChoice, FollowsTheOrderOfTheRule)
 {
     // Errors of second order: a quarter of the tolerance takes half the period.
-    const auto texels = makeTable([](double v) { return 0.3 * v * v; });
-    PeriodQuestion q = question(texels, 1.6e-3);
+    const TableForms table(opacityPoints(65, square));
+    PeriodQuestion q = table.question(1.6e-3);
     q.integrals = {};
-    const double period = choosePeriod(waves, q).periodVoxel;
+    q.cells = false;
+    const double period = choose(q).periodVoxel;
     q.tolerance = 4e-4;
-    EXPECT_NEAR(choosePeriod(waves, q).periodVoxel / period, 0.5, 0.1);
+    EXPECT_NEAR(choose(q).periodVoxel / period, 0.5, 0.12);
 }
 
-TEST(PeriodChoice, TakesIntegralsWhereTheTableJumps)
+// Runs of values where the table jumps, and pieces of cells where runs would be too short.
+TEST(PeriodChoice, TakesTheRuleThatTheTableNeeds)
 {
-    const auto texels = makeTable([](double v) { return v > 0.5 && v < 0.6 ? 0.5 : 0.0; });
-    const PeriodQuestion q = question(texels, 4e-3);
-    const PeriodChoice choice = choosePeriod(waves, q);
-    EXPECT_TRUE(choice.integrals);
-    PeriodQuestion without = q;
-    without.integrals = {};
-    const PeriodChoice midpoints = choosePeriod(waves, without);
-    EXPECT_FALSE(midpoints.integrals);
-    EXPECT_LT(midpoints.periodVoxel, choice.periodVoxel);
+    const TableForms table({{0.0, {1, 0.5, 0.25, 0.0}},
+                            {0.5, {1, 0.5, 0.25, 0.0}},
+                            {0.5, {1, 0.5, 0.25, 0.3}},
+                            {0.6, {1, 0.5, 0.25, 0.3}},
+                            {0.6, {1, 0.5, 0.25, 0.0}},
+                            {1.0, {1, 0.5, 0.25, 0.0}}});
+    PeriodQuestion q = table.question(1e-2);
+    const PeriodChoice coarse = choose(q);
+    EXPECT_EQ(coarse.rule, RayRule::INTEGRALS);
+    EXPECT_LE(errorOf(q, coarse, 1.0), 1e-2);
+    q.integrals = {};
+    q.cells = false;
+    const PeriodChoice midpoints = choose(q);
+    EXPECT_EQ(midpoints.rule, RayRule::MIDPOINTS);
+    EXPECT_LT(midpoints.periodVoxel, coarse.periodVoxel);
+    q = table.question(1e-5);
+    const PeriodChoice fine = choose(q);
+    EXPECT_EQ(fine.rule, RayRule::CELLS);
+    EXPECT_LE(fine.error, 1e-5);
+    EXPECT_LE(errorOf(q, fine, 1.0), 1e-5);
+}
+
+// What cannot be kept is said, and what comes nearest is taken.
+TEST(PeriodChoice, SaysWhatCannotBeKept)
+{
+    const TableForms table({{0.0, {1, 0.5, 0.25, 0.0}},
+                            {0.5, {1, 0.5, 0.25, 0.0}},
+                            {0.5, {1, 0.5, 0.25, 0.3}},
+                            {1.0, {1, 0.5, 0.25, 0.3}}});
+    PeriodQuestion q = table.question(1e-6);
+    q.cells = false;
+    const PeriodChoice choice = choose(q);
+    EXPECT_GT(choice.error, 1e-6);
+    EXPECT_LE(errorOf(q, choice, 1.0), choice.error);
 }
 
 TEST(PeriodChoice, LongerUnitsNeedNoMoreSamples)
 {
-    const auto texels = makeTable([](double v) { return 0.3 * v * v; });
-    PeriodQuestion q = question(texels, 1e-3);
-    const double period = choosePeriod(waves, q).periodVoxel;
-    q.voxelToUnits = glm::dmat3(0.1); // the volume is thinner, and its errors smaller
-    EXPECT_GT(choosePeriod(waves, q).periodVoxel, period);
+    const TableForms table(opacityPoints(65, square));
+    const PeriodQuestion q = table.question(1e-3);
+    // The volume is thinner, and its errors smaller.
+    EXPECT_GT(choosePeriod(q, voxels, BOX, glm::dmat3(0.1), false).periodVoxel,
+              choose(q).periodVoxel);
 }
 
 TEST(PeriodChoice, IsRepeatable)
 {
-    const auto texels = makeTable([](double v) { return 0.3 * v * v; });
-    const PeriodQuestion q = question(texels, 1e-3);
-    const PeriodChoice a = choosePeriod(waves, q), b = choosePeriod(waves, q);
+    const TableForms table(opacityPoints(65, square));
+    const PeriodQuestion q = table.question(1e-3);
+    const PeriodChoice a = choose(q), b = choose(q);
     EXPECT_EQ(a.periodVoxel, b.periodVoxel);
     EXPECT_EQ(a.error, b.error);
 }
 
 TEST(PeriodChoice, NothingToSeeNeedsNothing)
 {
-    const auto texels = makeTable([](double) { return 1.0; });
-    PeriodQuestion q = question(texels, 1e-3);
-    EXPECT_EQ(choosePeriod([](const glm::dvec3&) { return double(NAN); }, q).periodVoxel, 16.0);
-    q.box = Box3d();
-    EXPECT_EQ(choosePeriod(waves, q).periodVoxel, 1.0);
+    const TableForms table(opacityPoints(2, [](double) { return 0.5; }));
+    const PeriodQuestion q = table.question(1e-3);
+    EXPECT_EQ(choose(q, [](const glm::dvec3&) { return double(NAN); }).periodVoxel, 8.0);
+    EXPECT_EQ(choosePeriod(q, voxels, Box3d(), glm::dmat3(1.0), false).periodVoxel, 8.0);
 }
 
 } // namespace PeriodChoiceTest

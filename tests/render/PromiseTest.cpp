@@ -76,6 +76,12 @@ private:
     std::vector<support::Mask> _covered;
 };
 
+double expectedError(const PromiseCase& c)
+{
+    const auto& geometry = dynamic_cast<const VolumeGeometry&>(*c.twin.node->getChild(0));
+    return c.twin.node->getSettingsInForce(geometry).expectedError;
+}
+
 std::string describe(const PromiseCase& c, double tolerance)
 {
     std::ostringstream text;
@@ -94,28 +100,34 @@ class Promise : public support::GLTest, public ::testing::WithParamInterface<int
 TEST_P(Promise, IsKept)
 {
     const int step = support::INSTRUMENTED ? 9 * PARTS : PARTS;
+    int said = 0, all = 0;
     for (int number = GetParam(); number < PROMISE_CASES; number += step) {
         PromiseCase c = makePromiseCase(number);
         Examiner examiner(c);
         for (const double tolerance : TOLERANCES) {
             ASSERT_TRUE(c.twin.node->setErrorTolerance(tolerance));
-            EXPECT_LE(examiner.error(0), tolerance)
-                << describe(c, tolerance) << ", before a choice is made";
+            const double before = examiner.error(0); // a choice is made
             ASSERT_TRUE(support::waitForChoice(*c.twin.node));
+            // What cannot be kept is said, with how near it comes.
+            const double kept = std::max(tolerance, expectedError(c));
+            EXPECT_LE(before, kept) << describe(c, tolerance) << ", before a choice is made";
+            said += kept > tolerance;
             double worst = 0.0;
             for (std::size_t view = 0; view < examiner.viewCount(); ++view) {
                 const double error = examiner.error(view);
-                EXPECT_LE(error, tolerance) << describe(c, tolerance) << ", view " << view;
+                EXPECT_LE(error, kept) << describe(c, tolerance) << ", view " << view;
                 worst = std::max(worst, error);
             }
             std::ostringstream result;
             result << c.table << "; " << c.field << "; error " << worst << "; samples "
                    << examiner.samples();
+            ++all;
             RecordProperty("case " + std::to_string(number) + ", tolerance " +
                                std::to_string(tolerance),
                            result.str());
         }
     }
+    EXPECT_LE(said, all / 25);
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, Promise, ::testing::Range(0, PARTS));

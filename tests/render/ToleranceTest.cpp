@@ -3,6 +3,7 @@
 #include "Volumes.h"
 
 #include <osgVolumizer/render/cull/FrameTimes.h>
+#include <support/Choices.h>
 #include <support/GLTest.h>
 
 #include <cmath>
@@ -122,6 +123,7 @@ TEST_F(Tolerance, IsKeptInEveryScene)
         for (const double tolerance : {4e-3, 1e-3}) {
             twin.node->setLookup(VolumeAppearance::AUTOMATIC_LOOKUP);
             ASSERT_TRUE(twin.node->setErrorTolerance(tolerance));
+            ASSERT_TRUE(support::waitForChoice(*twin.node));
             EXPECT_TRUE(keeps(tolerance)) << c.name << ", tolerance " << tolerance;
             const double chosen = samples();
 #ifdef __SANITIZE_ADDRESS__
@@ -152,9 +154,11 @@ TEST_F(Tolerance, FollowsTableAndData)
     osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(SIZE), bumps);
     osg::ref_ptr<VolumeAppearance> volume = makeVolume(voxels);
     ASSERT_TRUE(volume->setErrorTolerance(1e-3));
+    volume->setLookup(VolumeAppearance::AFTER_INTERPOLATION); // so that periods tell all
     support::SceneRenderer renderer(volume, view(true));
     const auto voxelsPerSample = [&](const Points& points) {
         volume->getLookupTable()->setPoints(points, LookupTable::RANGE_FRACTION);
+        EXPECT_TRUE(support::waitForChoice(*volume));
         renderer.render();
         return renderer.counters().at("osgVolumizer voxels per sample");
     };
@@ -170,7 +174,60 @@ TEST_F(Tolerance, FollowsTableAndData)
     auto* source = static_cast<MemoryVoxelSource*>(voxels->getSource());
     std::fill_n(static_cast<float*>(source->data()), SIZE * SIZE * SIZE, 0.5f);
     voxels->dirty();
-    EXPECT_GT(voxelsPerSample(smoothPoints(0.05)), 10.0);
+    EXPECT_GT(voxelsPerSample(smoothPoints(0.05)), 7.0);
+}
+
+// Frames go on while a choice is made, with what keeps any tolerance, and after a change of the
+// table as after one of the data.
+TEST_F(Tolerance, FramesDoNotWaitForIt)
+{
+    TwinVolume twin = makeTwin(makeVoxels(glm::ivec3(SIZE), bumps), cases()[3].points);
+    ASSERT_TRUE(twin.node->setErrorTolerance(1e-3));
+    const VolumeGeometry& geometry = dynamic_cast<const VolumeGeometry&>(*twin.node->getChild(0));
+    support::SceneRenderer renderer(twin.node, view(true));
+    const auto settings = [&]() { return twin.node->getSettingsInForce(geometry); };
+    VolumeAppearance::Settings first = settings();
+    EXPECT_TRUE(first.refining);
+    EXPECT_EQ(first.lookup, VolumeAppearance::CELL_BY_CELL);
+    EXPECT_EQ(first.expectedError, 0.0);
+    const FloatImage expected = oraclePicture(oracleScene(twin.oracle), view(true));
+    const support::Mask covered = support::coveredPixels(expected, 1e-3f);
+    EXPECT_LE(compare(renderer.render(), expected, covered).rmse, 1e-3);
+    ASSERT_TRUE(support::waitForChoice(*twin.node));
+    const VolumeAppearance::Settings last = settings();
+    EXPECT_FALSE(last.refining);
+    EXPECT_GT(last.expectedError, 0.0);
+    EXPECT_LE(last.expectedError, 1e-3);
+    EXPECT_LE(compare(renderer.render(), expected, covered).rmse, 1e-3);
+    // A point that is dragged: each frame has its own table, and none of them is late.
+    for (int i = 0; i < 30; ++i) {
+        Points points = cases()[3].points;
+        points[2].value += 1e-4 * i;
+        twin.node->getLookupTable()->setPoints(points, LookupTable::RANGE_FRACTION);
+        renderer.render();
+    }
+    ASSERT_TRUE(support::waitForChoice(*twin.node));
+    // One that was forgotten half way is chosen when it comes back.
+    twin.node->getLookupTable()->setPoints(cases()[3].points, LookupTable::RANGE_FRACTION);
+    ASSERT_TRUE(support::waitForChoice(*twin.node));
+    EXPECT_NEAR(settings().expectedError, last.expectedError, 1e-12);
+}
+
+// What cannot be kept is said: cubic interpolation has no cells to split at.
+TEST_F(Tolerance, WhatCannotBeKeptIsSaid)
+{
+    TwinVolume twin = makeTwin(makeVoxels(glm::ivec3(SIZE), bumps), cases()[3].points);
+    ASSERT_TRUE(twin.node->setErrorTolerance(1e-5));
+    twin.node->setInterpolation(VolumeAppearance::CUBIC);
+    ASSERT_TRUE(support::waitForChoice(*twin.node));
+    const VolumeGeometry& geometry = dynamic_cast<const VolumeGeometry&>(*twin.node->getChild(0));
+    const VolumeAppearance::Settings settings = twin.node->getSettingsInForce(geometry);
+    EXPECT_GT(settings.expectedError, 1e-5);
+    const bool said = std::any_of(settings.reasons.begin(), settings.reasons.end(),
+                                  [](const std::string& reason) {
+                                      return reason.find("an error of 1e-05 cannot be kept") == 0;
+                                  });
+    EXPECT_TRUE(said);
 }
 
 TEST_F(Tolerance, MovingViewsAreCoarserOnly)

@@ -13,7 +13,8 @@ namespace core {
 namespace {
 
 constexpr double GAUSS = 0.21132486540518713; // (1 - 1/sqrt(3)) / 2
-constexpr double MOST_BITS = 1.0;             // of extinction in a piece
+constexpr double MOST_BITS = 1.0;             // of extinction in a piece,
+constexpr double LEAST_PART = 1.0 / 64.0;     // unless it is as short a part of a cell
 
 // Value along a cell, from 0 to 1.
 struct Cubic
@@ -102,6 +103,7 @@ glm::dvec4 lightOfPiece(const glm::dvec4& first, const glm::dvec4& second, doubl
 
 CellRay::CellRay(const FractionField& field, const glm::dvec3& beginVoxel,
                  const glm::dvec3& endVoxel, double lengthUnits, bool nearest)
+    : _nearest(nearest)
 {
     const double length = glm::length(endVoxel - beginVoxel);
     _unitsPerVoxel = lengthUnits / length;
@@ -142,7 +144,7 @@ void CellRay::visitPieces(const IntervalTable& table, double longestVoxel, const
             interval = -1;
             continue;
         }
-        if (interval < 0) interval = table.find(values.x);
+        if (interval < 0 || _nearest) interval = table.find(values.x);
         const Cubic cubic(values);
         const glm::dvec2 turns = cubic.turns();
         double s = 0.0;
@@ -158,7 +160,8 @@ void CellRay::visitPieces(const IntervalTable& table, double longestVoxel, const
                     to = (rises ? here < corner : here > corner) ? cubic.find(corner, s, end) : s;
                 }
                 const double thick = table.largestExtinction(interval) * length * _unitsPerVoxel;
-                const double most = std::min(longest, MOST_BITS / std::max(thick, 1e-300));
+                const double most =
+                    std::min(longest, std::max(MOST_BITS / std::max(thick, 1e-300), LEAST_PART));
                 const bool isLong = to - s > most;
                 if (isLong) to = s + most;
                 if (to > s && !visit(cubic, s, to, length, interval)) return;

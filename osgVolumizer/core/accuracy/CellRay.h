@@ -53,6 +53,7 @@ private:
     std::vector<double> _ends;      ///< of cells, from the ray's beginning, voxels
     std::vector<glm::vec4> _values; ///< at 0, 1/3, 2/3 and 1 of each cell
     double _unitsPerVoxel;
+    bool _nearest; ///< values of cells have nothing to do with one another
 };
 
 /// Light of a piece of a ray, premultiplied colour and opacity, from colour and extinction (bits

@@ -78,7 +78,7 @@ OSGVOLUMIZER_CORE_EXPORT PeriodChoice choosePeriod(const PeriodQuestion& questio
 
 /// How many rays choosePeriod() is to be given first, and at most; and the most cells that they are
 /// to pass together.
-constexpr std::size_t FIRST_RAYS = 1500, MOST_RAYS = 12000, MOST_RAY_CELLS = 4000000;
+constexpr std::size_t FIRST_RAYS = 3000, MOST_RAYS = 12000, MOST_RAY_CELLS = 4000000;
 
 } // namespace core
 } // namespace osgVolumizer

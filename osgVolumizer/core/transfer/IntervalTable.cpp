@@ -81,12 +81,16 @@ std::vector<glm::dvec4> entries(const Points& points, const Interval& interval, 
     return result;
 }
 
+// Relative to the largest extinction where that is less than a bit, as opacity units may be any.
 double errorOf(const std::vector<glm::dvec4>& few, const std::vector<glm::dvec4>& twiceAsMany)
 {
-    double error = 0.0;
+    double thickest = 1e-30, error = 0.0;
+    for (const glm::dvec4& entry : twiceAsMany)
+        thickest = std::max(thickest, std::min(entry.a, 1.0));
     for (std::size_t i = 0; i + 1 < few.size(); ++i) {
-        const glm::dvec4 off = 0.5 * (few[i] + few[i + 1]) - twiceAsMany[2 * i + 1];
-        error = std::max(error, largest(off) / std::max(1.0, twiceAsMany[2 * i + 1].a));
+        const glm::dvec4 truth = twiceAsMany[2 * i + 1];
+        const glm::dvec4 off = glm::abs(0.5 * (few[i] + few[i + 1]) - truth);
+        error = std::max({error, off.r, off.g, off.b, off.a / std::max(thickest, truth.a)});
     }
     return error;
 }

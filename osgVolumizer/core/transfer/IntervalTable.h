@@ -18,9 +18,9 @@ struct OSGVOLUMIZER_CORE_EXPORT IntervalTable
 {
     /// First two texels for each interval, from low values to high ones without gaps: its first
     /// and last value (the first of all and the last of all far away), the index of its first
-    /// entry, and entries per value; its largest extinction. Then entries, equally spaced in each interval with one at
-    /// either end, and one more: colour, and extinction in bits (-log2 of transmittance) per
-    /// opacity unit, both to be interpolated linearly.
+    /// entry, and entries per value; its largest extinction. Then entries, equally spaced in each
+    /// interval with one at either end, and one more: colour, and extinction in bits (-log2 of
+    /// transmittance) per opacity unit, both to be interpolated linearly.
     std::vector<glm::vec4> texels;
     int intervals = 0;
 
@@ -42,8 +42,8 @@ struct OSGVOLUMIZER_CORE_EXPORT IntervalTable
 
 /// Corners are jumps, and kinks where the slope of opacity, or of opacity times colour, changes by
 /// `sharpness` or more: per unit of the value, and relative to what is let through. 0: all points.
-/// Between entries extinction and colour are off by less than 1e-6 (relative above a bit), or by
-/// what 4096 entries an interval leave.
+/// Between entries extinction and colour are off by less than 1e-6, extinction relative to the
+/// largest of the interval, or by what 4096 entries an interval leave.
 OSGVOLUMIZER_CORE_EXPORT IntervalTable makeIntervalTable(const TransferFunction& function,
                                                          double sharpness);
 

@@ -67,7 +67,7 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
 {
     const VolumeAppearance& appearance = *volume.appearance;
     const Precision precision = visitor.getState() ? precisionOf(*visitor.getState()) : Precision();
-    const TableChoice choice =
+    TableChoice choice =
         volume.prepared->scalars
             ? chooseTable(appearance, *volume.prepared, volume.geometry->getScalarRange())
             : chooseTable(appearance, *volume.prepared, precision);
@@ -88,6 +88,14 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
         const ReducedSampling reduced = reducedSampling(reduction);
         volume.rayDistance = reduced.rayDistance;
         volume.sampling.periodVoxel *= reduced.stretch;
+        // Pieces of cells do not become longer; runs of values do.
+        if (reduced.stretch > 1.0 && choice.table.intervals)
+            choice.table =
+                renderData<AppearanceData>(appearance)
+                    ->tables.get(*appearance.getLookupTable(), appearance.getVoxels()->getRange(),
+                                 appearance.getInterpolation() == VolumeAppearance::NEAREST
+                                     ? VolumeAppearance::AFTER_INTERPOLATION
+                                     : VolumeAppearance::PREINTEGRATED);
     }
     return choice.table;
 }

@@ -43,7 +43,8 @@ SamplingQuestion questionFor(const VolumeAppearance& appearance, const PreparedG
                      canSplitRays(appearance, prepared);
     const bool steps = lookup != A::CELL_BY_CELL;
     if (steps && lookup != A::PREINTEGRATED) question.midpoints = tableOf(A::AFTER_INTERPOLATION);
-    if (steps && lookup != A::AFTER_INTERPOLATION) question.integrals = tableOf(A::PREINTEGRATED);
+    if (steps && lookup != A::AFTER_INTERPOLATION && appearance.getInterpolation() != A::NEAREST)
+        question.integrals = tableOf(A::PREINTEGRATED);
     question.intervals = tableOf(A::CELL_BY_CELL);
     question.frameToUnits = voxelToObject(voxels, prepared) / appearance.getEffectiveOpacityUnit();
     question.box = prepared.voxelFrame ? prepared.regionBox : voxels.getLayout().extent();

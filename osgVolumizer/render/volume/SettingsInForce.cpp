@@ -218,12 +218,12 @@ VolumeAppearance::Lookup usedLookup(const VolumeAppearance& appearance,
     const bool runs = rays && appearance.getVoxels()->getComponents() == 1 &&
                       appearance.getInterpolation() != VolumeAppearance::NEAREST &&
                       rowOf(usedRayFunction(appearance, prepared, ofRayFunction)).integratesLight;
-    const bool cells = appearance.getLookup() == VolumeAppearance::CELL_BY_CELL ||
-                       (appearance.getLookup() == VolumeAppearance::AUTOMATIC_LOOKUP &&
-                        appearance.getErrorTolerance() > 0.0);
-    return runs || (cells && canSplitRays(appearance, prepared))
-               ? appearance.getLookup()
-               : VolumeAppearance::AFTER_INTERPOLATION;
+    const auto asked = appearance.getLookup();
+    const bool chosen = asked == VolumeAppearance::AUTOMATIC_LOOKUP &&
+                        appearance.getErrorTolerance() > 0.0 && canSplitRays(appearance, prepared);
+    const bool suits = asked == VolumeAppearance::CELL_BY_CELL ? canSplitRays(appearance, prepared)
+                                                               : runs || chosen;
+    return suits ? asked : VolumeAppearance::AFTER_INTERPOLATION;
 }
 
 bool canSplitRays(const VolumeAppearance& appearance, const PreparedGeometry& prepared)

@@ -5,6 +5,7 @@
 #include <osgVolumizer/VolumeAppearance.h>
 #include <osgVolumizer/VolumeGeometry.h>
 
+#include <support/Choices.h>
 #include <support/Hooks.h>
 
 namespace osgVolumizer {
@@ -55,6 +56,8 @@ public:
                     ? appearance->setErrorTolerance(1e-3 * stepVoxel)
                     : appearance->setSamplingPeriod(osg::Vec3d(stepVoxel, stepVoxel, stepVoxel));
             if (!status.ok()) return status;
+            if (_options.tolerance && !support::waitForChoice(*appearance))
+                return Status(ErrorCode::NOT_SUPPORTED, "no sampling was chosen");
         }
         return status;
     }

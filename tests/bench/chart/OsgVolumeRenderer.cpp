@@ -31,7 +31,7 @@ namespace bench {
 
 namespace {
 
-constexpr int TABLE_SIZE = 4096;
+constexpr int COLOR_TABLE_SIZE = 4096;
 
 osg::Matrixd boxMatrix(const glm::dvec3& low, const glm::dvec3& high)
 {
@@ -128,17 +128,17 @@ osg::ref_ptr<osg::Image> Tile::classifiedImage(double stepVoxel) const
 osg::ref_ptr<osg::TransferFunction1D> Tile::transferFunction(double stepVoxel) const
 {
     osg::ref_ptr<osg::TransferFunction1D> tf = new osg::TransferFunction1D;
-    tf->allocate(TABLE_SIZE);
+    tf->allocate(COLOR_TABLE_SIZE);
     // Ends of the domain such that entry i lies at i/(n-1) of the range.
     osg::TransferFunction1D::ColorMap ends;
-    ends[float(-0.5 / (TABLE_SIZE - 1))] = osg::Vec4();
-    ends[float(1.0 + 0.5 / (TABLE_SIZE - 1))] = osg::Vec4();
+    ends[float(-0.5 / (COLOR_TABLE_SIZE - 1))] = osg::Vec4();
+    ends[float(1.0 + 0.5 / (COLOR_TABLE_SIZE - 1))] = osg::Vec4();
     tf->setColorMap(ends);
     osg::Image* image = tf->getImage();
     image->setInternalTextureFormat(GL_RGBA32F_ARB);
     float* out = reinterpret_cast<float*>(image->data());
-    for (int i = 0; i < TABLE_SIZE; ++i) {
-        const glm::vec4 c(colorOfStep(i / (TABLE_SIZE - 1.0), stepVoxel));
+    for (int i = 0; i < COLOR_TABLE_SIZE; ++i) {
+        const glm::vec4 c(colorOfStep(i / (COLOR_TABLE_SIZE - 1.0), stepVoxel));
         for (int k = 0; k < 4; ++k)
             *out++ = c[k];
     }

@@ -148,14 +148,14 @@ ChartScene head(bool shaded)
     return scene;
 }
 
-struct Entry
+struct SceneEntry
 {
     const char* name;
     const char* description;
     std::function<ChartScene()> make;
 };
 
-std::vector<Entry> entries()
+std::vector<SceneEntry> entries()
 {
     const VoxelType f = VoxelType::FLOAT32;
     const auto field = [](VoxelType type, const TablePoints& table, bool perspective = true,
@@ -200,7 +200,7 @@ std::vector<double> ChartVolume::values() const
 std::vector<ChartScene> chartScenes(const std::vector<std::string>& filters)
 {
     std::vector<ChartScene> scenes;
-    for (const Entry& entry : entries()) {
+    for (const SceneEntry& entry : entries()) {
         const bool wanted = filters.empty() ||
                             std::find(filters.begin(), filters.end(), entry.name) != filters.end();
         if (!wanted) continue;

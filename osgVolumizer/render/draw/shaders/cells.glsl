@@ -24,8 +24,11 @@ vec3 startPlace, placesPerDepth;
 vec3 cellFace; // coordinates of the faces that it meets next
 float cellBegin, cellEnd; // depths
 
-// Of a piece in the interval at hand, depth.
-float longestPart(float unitsPerDepth) { return min(longestPiece, MOST_BITS / max(mostExtinction * unitsPerDepth, 1e-30)); }
+// Of a piece in the interval at hand, depth: no shorter than floats can tell within a cell.
+float longestPart(float unitsPerDepth, float cell)
+{
+    return min(longestPiece, max(MOST_BITS / max(mostExtinction * unitsPerDepth, 1e-30), cell / 64.0));
+}
 
 vec3 cellPlace(float t) { return startPlace + t * placesPerDepth; }
 float fractionAt(float t) { return voxelAt(cellPlace(t)) * valueToEntry.x + valueToEntry.y; }
@@ -175,7 +178,7 @@ float pieceDepth; // where the piece at hand ends
 
 void findPart(float tNear, float tFar, inout vec2 all)
 {
-    findShown(tNear, tFar, all);
+    findRegion(tNear, tFar, all);
     beginCells(memberOrigin, memberDirection, shown.x);
     pieceDepth = shown.x;
 #ifdef CORNERS
@@ -196,11 +199,11 @@ void cutStep(float t, inout float end)
 #ifdef CORNERS
         leavePiece();
         if (piece >= 1.0) enterCell(shown.y);
-        findPieceEnd(longestPart(unitsPerDepth));
+        findPieceEnd(longestPart(unitsPerDepth, cellEnd - cellBegin));
         pieceDepth = pieceEnd < 1.0 ? mix(cellBegin, cellEnd, pieceEnd) : cellEnd;
         COUNT_PIECE
 #else
-        passCell(min(shown.y, cellEnd + longestPart(unitsPerDepth)));
+        passCell(min(shown.y, cellEnd + longestPart(unitsPerDepth, 1.0 / length(cellRate))));
         pieceDepth = cellEnd;
         COUNT_PIECE
 #endif
@@ -278,7 +281,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     // One loop for both: on llvmpipe bodies of inner loops are run once more than any ray wants.
     for (int i = 0; i < MOST_PIECES && (piece < 1.0 || cellEnd < end) && light.a < 1.0 - opaqueEnough; ++i) {
         if (piece >= 1.0) enterCell(end);
-        findPieceEnd(longestPart(unitsPerDepth));
+        findPieceEnd(longestPart(unitsPerDepth, cellEnd - cellBegin));
         float part = pieceEnd - piece, length = cellEnd - cellBegin;
         vec2 values = vec2(cubicAt(piece + GAUSS * part), cubicAt(pieceEnd - GAUSS * part));
         addPiece(origin, direction, values, cellBegin + piece * length, cellBegin + pieceEnd * length,
@@ -289,7 +292,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
 #else
     takeInterval(1); // between those of values beyond the table
     for (int i = 0; i < MOST_PIECES && cellEnd < end && light.a < 1.0 - opaqueEnough; ++i) {
-        passCell(min(end, cellEnd + longestPart(unitsPerDepth)));
+        passCell(min(end, cellEnd + longestPart(unitsPerDepth, 1.0 / length(cellRate))));
         float length = cellEnd - cellBegin;
 #ifdef NEAREST
         vec2 values = vec2(fractionAt(0.5 * (cellBegin + cellEnd)));

@@ -142,18 +142,20 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
         last = longer;
     }
     float t = max(start, tNear + i * dt);
-    vec3 place = placeOnRay(origin, direction, t);
+    vec3 first = placeOnRay(origin, direction, t), place = first; // as for steps without integrals
     beginCut(cutPoint(origin, direction, t));
     float entry = tableEntry(place);
     vec4 integral = tableIntegral(entry);
     float depth = min(stop, tNear + (i + 1.0) * dt) - t; // of the first step, which may be cut
-    place += rate * depth;
+    float ahead = depth; // of the first place
+    place = first + ahead * rate;
     t += depth;
     for (int steps = int(last - i); steps > 0 && light.a > opaqueEnough; --steps) {
         addRun(origin, direction, t, place, depth, unitsPerDepth, entry, integral, light);
         depth = min(dt, stop - t); // of the last one, which may be cut too
         t += depth;
-        place += rate * depth;
+        ahead += depth;
+        place = first + ahead * rate;
     }
     return vec4(light.rgb, 1.0 - light.a);
 }
@@ -184,8 +186,10 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
     vec3 color = vec3(0.0);
     float transmittance = 1.0;
     float t = tNear + (i + 0.5) * dt;
-    vec3 place = placeOnRay(origin, direction, t);
+    // Places are counted from the first one: each sum of two is off by as much as all others, which adds up.
+    vec3 first = placeOnRay(origin, direction, t), place = first;
     int steps = int(last - i);
+    float taken = 0.0;
     beginCut(cutPoint(origin, direction, t - 0.5 * dt));
     if (steps > 0) do {
         vec4 c = classify(place);
@@ -205,7 +209,8 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 brick)
         float next = transmittance * exp2(-c.a * units);
         color += (transmittance - next) * c.rgb;
         transmittance = next;
-        place += rate;
+        taken += 1.0;
+        place = first + taken * rate;
     } while (--steps > 0 && transmittance > opaqueEnough);
     return vec4(color, 1.0 - transmittance);
 }
