@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <sstream>
 
@@ -185,39 +186,43 @@ std::vector<Best> findBest(PromiseCase& c, Examiner& examiner)
     return best;
 }
 
-// These have all kinds of tables and of fields.
-class PromiseCost : public support::GLTest, public ::testing::WithParamInterface<int>
-{
-};
+// All kinds of tables and of fields.
+constexpr int COST_CASES[] = {0, 7, 15, 28, 29, 66, 71, 89, 103, 106, 140, 192};
 
-TEST_P(PromiseCost, IsNearTheLeast)
+using PromiseCost = support::GLTest;
+
+// What is chosen for all views before any is drawn, against what turns out to do for three of them.
+TEST_F(PromiseCost, IsNearTheLeast)
 {
     if (support::INSTRUMENTED) return; // takes minutes, and is the same code with other numbers
-    PromiseCase c = makePromiseCase(GetParam());
-    Examiner examiner(c);
-    std::vector<double> chosen;
-    for (const double tolerance : TOLERANCES) {
-        ASSERT_TRUE(c.twin.node->setErrorTolerance(tolerance));
-        ASSERT_TRUE(support::waitForChoice(*c.twin.node));
-        chosen.push_back(examiner.samples());
+    double sum = 0.0;
+    int count = 0;
+    for (const int number : COST_CASES) {
+        PromiseCase c = makePromiseCase(number);
+        Examiner examiner(c);
+        std::vector<double> chosen;
+        for (const double tolerance : TOLERANCES) {
+            ASSERT_TRUE(c.twin.node->setErrorTolerance(tolerance));
+            ASSERT_TRUE(support::waitForChoice(*c.twin.node));
+            chosen.push_back(examiner.samples());
+        }
+        const std::vector<Best> best = findBest(c, examiner);
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            // Where none of the fixed choices does, nothing is too much.
+            if (!std::isfinite(best[i].samples)) continue;
+            const double ratio = chosen[i] / best[i].samples;
+            std::printf("  %s: %.2f times %s with a period of %.2f\n",
+                        describe(c, TOLERANCES[i]).c_str(), ratio, best[i].way,
+                        best[i].periodVoxel);
+            EXPECT_LT(ratio, 8.0) << describe(c, TOLERANCES[i]);
+            sum += std::log(ratio);
+            ++count;
+        }
     }
-    const std::vector<Best> best = findBest(c, examiner);
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-        // Where none of the fixed choices does, nothing is too much.
-        EXPECT_LE(chosen[i], 1.3 * best[i].samples)
-            << describe(c, TOLERANCES[i]) << ": " << best[i].way << " with a period of "
-            << best[i].periodVoxel << " voxels takes " << best[i].samples << " samples";
-        std::ostringstream result;
-        result << c.table << "; " << c.field << "; chosen " << chosen[i] << "; best "
-               << best[i].samples << "; " << best[i].way << "; period " << best[i].periodVoxel;
-        RecordProperty("cost of case " + std::to_string(c.number) + ", tolerance " +
-                           std::to_string(TOLERANCES[i]),
-                       result.str());
-    }
+    ASSERT_GT(count, 30);
+    std::printf("  mean %.3f\n", std::exp(sum / count));
+    EXPECT_LT(std::exp(sum / count), 1.4);
 }
-
-INSTANTIATE_TEST_SUITE_P(Cases, PromiseCost,
-                         ::testing::Values(0, 7, 15, 28, 29, 66, 71, 89, 103, 106, 140, 192));
 
 } // namespace
 

@@ -26,7 +26,7 @@ constexpr double TRUTH = 0.125;  // longest piece of what is taken for the truth
 constexpr double FINEST = 0.25;  // longest piece that may be chosen
 constexpr double LONGEST = 8.0, SHORTEST = 0.0625; // periods, voxels
 // Errors of few rays, in few directions, are off by this.
-constexpr double SAFETY = 1.4;
+constexpr double SAFETY = 1.5;
 // The part of a tolerance that filtering may take. Squares of errors add, so that it is within what
 // SAFETY leaves.
 constexpr double FILTER_SHARE = 0.25;
@@ -34,7 +34,7 @@ constexpr double FILTER_SHARE = 0.25;
 // within its range, and where not.
 constexpr double INTEGRAL_COST = 1.25, CORNER_COST = 6.4, PIECE_COST = 1.9;
 // A picture has so many rays that differ: what it shows may be off by more than what many show.
-constexpr double VIEW = 1000.0;
+constexpr double VIEW = 500.0;
 // The rays of one direction tell of it as if so many average ones were among them.
 constexpr double FEW = 30.0;
 // Floats and the texture units of a card, which take no part in this.
