@@ -5,6 +5,7 @@
 #include <osgVolumizer/render/context/ContextResources.h>
 #include <osgVolumizer/render/context/MeasurePrecision.h>
 
+#include <support/Choices.h>
 #include <support/GLTest.h>
 #include <support/Precision.h>
 
@@ -205,6 +206,7 @@ TEST_F(PrecisionOfAContext, LetsAnErrorToleranceHaveExactFiltering)
         {45, -40, 35}, {10, 10, 10}, {0, 0, 1});
     options = support::limited(options, [](ContextLimits& limits) { limits.filterBits = 4; });
     ASSERT_TRUE(volume->setErrorTolerance(1e-3));
+    ASSERT_TRUE(support::waitForChoice(*volume));
     support::SceneRenderer renderer(volume, options);
     const support::FloatImage unknown = renderer.render(), known = renderer.render();
     volume->setExactFiltering(true);

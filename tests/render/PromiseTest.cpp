@@ -169,7 +169,7 @@ struct Best
 // For each tolerance. A way's period is the longest of a geometric sequence that keeps it.
 std::vector<Best> findBest(PromiseCase& c, Examiner& examiner)
 {
-    constexpr double LONGEST = 16.0, SHORTEST = 1.0 / 16.0, RATIO = 0.8;
+    constexpr double LONGEST = 8.0, SHORTEST = 1.0 / 16.0, RATIO = 0.8; // as may be chosen
     std::vector<Best> best(std::size(TOLERANCES));
     c.twin.node->setErrorTolerance(0.0);
     for (const Way& way : WAYS) {

@@ -237,8 +237,8 @@ bool canSplitRays(const VolumeAppearance& appearance, const PreparedGeometry& pr
 
 double opaqueEnoughFor(double tolerance)
 {
-    constexpr double SHARE = 0.02, LEAST = 1e-7;
-    return std::max(SHARE * tolerance, LEAST);
+    constexpr double SHARE = 0.02, LEAST = 1e-7, MOST = 1e-3;
+    return std::clamp(SHARE * tolerance, LEAST, MOST);
 }
 
 void explainError(double tolerance, double expectedError, Reasons& reasons)
