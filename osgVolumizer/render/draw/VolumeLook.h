@@ -32,7 +32,7 @@ struct VolumeLook
     double referenceDepth = 0.0;          ///< eye units; depths of slabs are counted from here
     double step = 1.0;                    ///< eye units of depth between samples
     double voxelsPerSample = 1.0;         ///< along the view axis
-    double stepsPerLength = 0.0;  ///< of the frame, where an error is kept; else 0
+    double stepsPerLength = 0.0;          ///< of the frame, where an error is kept; else 0
     int maximumSteps = 1;
     double opaqueEnough = 3e-5;                 ///< what is left of the light where rays end
     glm::vec3 regionMin{0.0f}, regionMax{0.0f}; ///< slabs: box of the whole volume (frame)
