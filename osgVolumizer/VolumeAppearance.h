@@ -208,7 +208,7 @@ public:
     /// used. One choice for all views. Kept from 1e-2 to 1e-5 with voxels of any kind; where not,
     /// the least is taken, and said once: see Settings::expectedError. A frame spends some 10 ms on
     /// it after a change of data or table; the rest is done by another thread, and meanwhile, for
-    /// tenths of a second, frames are as fine as any data need.
+    /// about a second, frames are as fine as any data need.
     /// Composited slabs of voxels of one component, without shading. 0 (default): as the period
     /// says.
     ReportedStatus setErrorTolerance(double rootMeanSquare);

@@ -264,10 +264,12 @@ std::optional<core::PeriodChoice> SamplingChoices::get(const Voxels& voxels,
     }
     std::lock_guard<std::mutex> sampling(sampled->mutex);
     Reader reader(voxels, q.nearest);
-    if (answer->filterError < 0.0)
+    if (answer->filterError < 0.0) {
         answer->filterError =
             core::filterError([&reader](const glm::dvec3& p) { return reader(p); }, shown,
                               q.frameToUnits, *answer->table, core::PeriodChoice::FILTER_WEIGHT);
+        return std::nullopt; // enough for a frame, which may have made tables
+    }
     if (!sample(*sampled, reader, answer->wanted)) return std::nullopt;
     sampled->shared = true;
     const bool mayGrow =
