@@ -101,7 +101,7 @@ class Promise : public support::GLTest, public ::testing::WithParamInterface<int
 TEST_P(Promise, IsKept)
 {
     const int step = support::INSTRUMENTED ? 9 * PARTS : PARTS;
-    int said = 0, all = 0;
+    int said = 0;
     for (int number = GetParam(); number < PROMISE_CASES; number += step) {
         PromiseCase c = makePromiseCase(number);
         Examiner examiner(c);
@@ -122,13 +122,12 @@ TEST_P(Promise, IsKept)
             std::ostringstream result;
             result << c.table << "; " << c.field << "; error " << worst << "; samples "
                    << examiner.samples();
-            ++all;
             RecordProperty("case " + std::to_string(number) + ", tolerance " +
                                std::to_string(tolerance),
                            result.str());
         }
     }
-    EXPECT_LE(said, all / 25);
+    EXPECT_LE(said, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, Promise, ::testing::Range(0, PARTS));
