@@ -60,9 +60,15 @@ struct Interval
 
 glm::dvec4 entryOf(const Points& points, const Interval& interval, double value)
 {
+    const auto begin = points.begin() + std::ptrdiff_t(interval.first),
+               end = points.begin() + std::ptrdiff_t(interval.last);
     std::size_t i = interval.first;
-    while (i + 1 < interval.last && points[i + 1].value <= value)
-        ++i;
+    if (begin < end) {
+        const auto next = std::upper_bound(
+            begin + 1, end, value,
+            [](double v, const TransferFunction::Point& point) { return v < point.value; });
+        i += std::size_t(next - begin) - 1;
+    }
     glm::dvec4 c = points[i].color;
     if (i < interval.last) {
         const double width = points[i + 1].value - points[i].value;

@@ -18,13 +18,19 @@ ChoiceQueue& ChoiceQueue::instance()
     return *queue;
 }
 
+// Expects the lock.
+ChoiceQueue::Jobs::iterator ChoiceQueue::jobOf(const void* owner)
+{
+    return std::find_if(_jobs.begin(), _jobs.end(),
+                        [owner](const auto& known) { return known.first == owner; });
+}
+
 void ChoiceQueue::ask(const void* owner, std::function<void()> job)
 {
     std::function<void()> replaced; // destroyed last, without the lock
     std::lock_guard<std::mutex> lock(_mutex);
     if (_stopping) return;
-    const auto waiting = std::find_if(_jobs.begin(), _jobs.end(),
-                                      [owner](const auto& known) { return known.first == owner; });
+    const auto waiting = jobOf(owner);
     if (waiting != _jobs.end()) {
         replaced = std::move(waiting->second);
         waiting->second = std::move(job);
@@ -34,6 +40,16 @@ void ChoiceQueue::ask(const void* owner, std::function<void()> job)
     if (_running) return;
     _running = true;
     std::thread([this] { work(); }).detach();
+}
+
+void ChoiceQueue::forget(const void* owner)
+{
+    std::function<void()> dropped; // destroyed last, without the lock
+    std::lock_guard<std::mutex> lock(_mutex);
+    const auto waiting = jobOf(owner);
+    if (waiting == _jobs.end()) return;
+    dropped = std::move(waiting->second);
+    _jobs.erase(waiting);
 }
 
 void ChoiceQueue::end()

@@ -19,6 +19,8 @@ public:
     /// A job for the thread, in place of one of this owner that has not begun. It may not refer to
     /// anything that is not its own: the process may end meanwhile.
     void ask(const void* owner, std::function<void()> job);
+    /// Drops a job of this owner that has not begun.
+    void forget(const void* owner);
     /// Takes nothing any more, and waits for what is running, for two seconds at most: the end of
     /// the process.
     void end();
@@ -28,11 +30,14 @@ public:
 private:
     ChoiceQueue() = default;
     ~ChoiceQueue() = default;
+    using Job = std::function<void()>;
+    using Jobs = std::list<std::pair<const void*, Job>>;
+    Jobs::iterator jobOf(const void* owner);
     void work();
 
     std::mutex _mutex; ///< of what follows
     std::condition_variable _idle;
-    std::list<std::pair<const void*, std::function<void()>>> _jobs; ///< the oldest first
+    Jobs _jobs; ///< the oldest first
     bool _running = false, _stopping = false;
 };
 

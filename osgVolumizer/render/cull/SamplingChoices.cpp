@@ -127,9 +127,10 @@ struct SamplingChoices::Sampled
     std::shared_ptr<Rays> rays = std::make_shared<Rays>(); ///< not changed once others see it
     bool shared = false;
     std::size_t cells = 0;
+    const core::Box3d box; ///< voxel frame
 
-    Sampled(const core::Box3d& box, const glm::dmat3& frameToUnits, bool nearest)
-        : random(box, frameToUnits, nearest)
+    Sampled(const core::Box3d& shown, const glm::dmat3& frameToUnits, bool nearest)
+        : random(shown, frameToUnits, nearest), box(shown)
     {
     }
 };
@@ -148,10 +149,11 @@ struct SamplingChoices::Answer
     std::shared_ptr<const core::IntervalTable> table;
     LookupTable::Function function;
     core::PeriodQuestion question;
+    std::shared_ptr<Sampled> sampled; ///< null where nothing shows
 
-    explicit Answer(const SamplingQuestion& q)
+    Answer(const SamplingQuestion& q, std::shared_ptr<Sampled> rays)
         : midpoints(texelsOf(q.midpoints)), integrals(texelsOf(q.integrals)),
-          table(q.intervals.intervals), function(q.intervals.function)
+          table(q.intervals.intervals), function(q.intervals.function), sampled(std::move(rays))
     {
         question.tolerance = q.tolerance;
         question.opaqueEnough = q.opaqueEnough;
@@ -219,7 +221,7 @@ bool sample(SamplingChoices::Sampled& sampled, Reader& reader, std::size_t wante
 
 SamplingChoices::~SamplingChoices()
 {
-    ChoiceQueue::instance().ask(this, [] {}); // in place of one that waits
+    ChoiceQueue::instance().forget(this);
 }
 
 bool SamplingChoices::DataKey::operator==(const DataKey& o) const
@@ -235,46 +237,58 @@ bool SamplingChoices::Key::operator==(const Key& o) const
            data == o.data;
 }
 
+// What shows something is looked for once for each question, not in every frame.
+std::shared_ptr<SamplingChoices::Answer> SamplingChoices::answerTo(const Voxels& voxels,
+                                                                   const SamplingQuestion& q)
+{
+    DataKey data{voxels.getLayoutCount(), modifiedCount(voxels), q.frameToUnits, q.box, q.nearest};
+    const Key key{q.midpoints.id, q.integrals.id, q.intervals.id, q.tolerance, q.cells, data};
+    {
+        std::lock_guard<std::mutex> lock(_mutex);
+        if (const auto* known = _answers.find(key)) return *known;
+    }
+    data.box = rounded(intersection(boxOfShown(voxels, q.intervals), q.box), q.box);
+    std::lock_guard<std::mutex> lock(_mutex);
+    if (const auto* known = _answers.find(key)) return *known;
+    std::shared_ptr<Sampled> sampled;
+    if (!data.box.empty()) {
+        const auto* rays = _sampled.find(data);
+        sampled = rays ? *rays
+                       : _sampled.add(
+                             data, std::make_shared<Sampled>(data.box, q.frameToUnits, q.nearest));
+    }
+    return _answers.add(key, std::make_shared<Answer>(q, sampled));
+}
+
 std::optional<core::PeriodChoice> SamplingChoices::get(const Voxels& voxels,
                                                        const SamplingQuestion& q)
 {
-    const core::Box3d shown = rounded(intersection(boxOfShown(voxels, q.intervals), q.box), q.box);
-    const DataKey data{voxels.getLayoutCount(), modifiedCount(voxels), q.frameToUnits, shown,
-                       q.nearest};
-    std::shared_ptr<Answer> answer;
-    std::shared_ptr<Sampled> sampled;
-    {
-        const Key key{q.midpoints.id, q.integrals.id, q.intervals.id, q.tolerance, q.cells, data};
-        std::lock_guard<std::mutex> lock(_mutex);
-        const auto* known = _answers.find(key);
-        answer = known ? *known : _answers.add(key, std::make_shared<Answer>(q));
-        const auto* rays = _sampled.find(data);
-        if (!shown.empty())
-            sampled = rays ? *rays
-                           : _sampled.add(
-                                 data, std::make_shared<Sampled>(shown, q.frameToUnits, q.nearest));
-    }
+    const std::shared_ptr<Answer> answer = answerTo(voxels, q);
     std::unique_lock<std::mutex> lock(answer->mutex);
-    if (answer->known) return answer->choice;
+    if (answer->known) {
+        answer->sampled.reset(); // as large as the rays are
+        return answer->choice;
+    }
     if (answer->deciding) return std::nullopt;
-    if (!sampled) { // nothing shows
+    if (!answer->sampled) { // nothing shows
         answer->choice = core::choosePeriod(answer->question, {}).choice;
         answer->known = true;
         return answer->choice;
     }
-    std::lock_guard<std::mutex> sampling(sampled->mutex);
+    Sampled& sampled = *answer->sampled;
+    std::lock_guard<std::mutex> sampling(sampled.mutex);
     Reader reader(voxels, q.nearest);
     if (answer->filterError < 0.0) {
         answer->filterError =
-            core::filterError([&reader](const glm::dvec3& p) { return reader(p); }, shown,
+            core::filterError([&reader](const glm::dvec3& p) { return reader(p); }, sampled.box,
                               q.frameToUnits, *answer->table, core::PeriodChoice::FILTER_WEIGHT);
         return std::nullopt; // enough for a frame, which may have made tables
     }
-    if (!sample(*sampled, reader, answer->wanted)) return std::nullopt;
-    sampled->shared = true;
+    if (!sample(sampled, reader, answer->wanted)) return std::nullopt;
+    sampled.shared = true;
     const bool mayGrow =
-        2 * answer->wanted <= core::MOST_RAYS && sampled->cells < core::MOST_RAY_CELLS;
-    const std::shared_ptr<const Rays> rays = sampled->rays;
+        2 * answer->wanted <= core::MOST_RAYS && sampled.cells < core::MOST_RAY_CELLS;
+    const std::shared_ptr<const Rays> rays = sampled.rays;
     const auto decision = std::make_shared<Decision>(answer);
     lock.unlock();
     ChoiceQueue::instance().ask(

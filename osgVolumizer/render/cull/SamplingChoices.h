@@ -54,7 +54,7 @@ private:
         unsigned layoutCount;
         std::uint64_t modified;
         glm::dmat3 frameToUnits;
-        core::Box3d box; ///< of what shows something, or a little more
+        core::Box3d box;
         bool nearest;
         bool operator==(const DataKey& o) const;
     };
@@ -63,12 +63,15 @@ private:
         unsigned midpointsId, integralsId, intervalsId;
         double tolerance;
         bool cells;
-        DataKey data;
+        DataKey data; ///< with the box of the region
         bool operator==(const Key& o) const;
     };
 
+    std::shared_ptr<Answer> answerTo(const Voxels& voxels, const SamplingQuestion& question);
+
     std::mutex _mutex;
     core::RecencyCache<Key, std::shared_ptr<Answer>> _answers{4};
+    /// By the box of what shows something, or a little more.
     core::RecencyCache<DataKey, std::shared_ptr<Sampled>> _sampled{2};
 };
 
