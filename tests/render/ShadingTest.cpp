@@ -1,10 +1,9 @@
 // Light on volumes, against Blinn-Phong in double precision on the exact gradient rule.
 
-#include "Volumes.h"
+#include "TestLights.h"
 
 #include <osgVolumizer/Error.h>
 
-#include <osg/LightSource>
 #include <osg/MatrixTransform>
 
 #include <oracles/Projection.h>
@@ -39,112 +38,6 @@ RenderOptions view(bool perspective = true)
     return options.lookAt({40, -38, 32}, {10, 10, 10}, {0, 0, 1});
 }
 
-// A light in the world frame, for OSG and for the oracle.
-struct TestLight
-{
-    glm::dvec4 position{0, 0, 0, 1};
-    glm::dvec3 color{1.0}, ambient{0.0};
-    glm::dvec3 attenuation{1.0, 0.0, 0.0};
-    glm::dvec3 direction{0, 0, -1};
-    double cutoffDegrees = 180.0, exponent = 0.0;
-};
-
-osg::ref_ptr<osg::LightSource> makeSource(const TestLight& light, int number, osg::StateSet& lit)
-{
-    osg::ref_ptr<osg::Light> l = new osg::Light(number);
-    l->setPosition(
-        osg::Vec4(light.position.x, light.position.y, light.position.z, light.position.w));
-    l->setDirection(osg::Vec3(light.direction.x, light.direction.y, light.direction.z));
-    l->setAmbient(osg::Vec4(light.ambient.r, light.ambient.g, light.ambient.b, 1));
-    l->setDiffuse(osg::Vec4(light.color.r, light.color.g, light.color.b, 1));
-    l->setSpecular(osg::Vec4(light.color.r, light.color.g, light.color.b, 1));
-    l->setConstantAttenuation(light.attenuation.x);
-    l->setLinearAttenuation(light.attenuation.y);
-    l->setQuadraticAttenuation(light.attenuation.z);
-    l->setSpotCutoff(light.cutoffDegrees);
-    l->setSpotExponent(light.exponent);
-    osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
-    source->setLight(l);
-    source->setStateSetModes(lit, osg::StateAttribute::ON);
-    return source;
-}
-
-// Central differences as documented, less at the last samples; in field units.
-glm::dvec3 gradientOf(const oracle::Grid& grid, const glm::dvec3& p)
-{
-    glm::dvec3 g;
-    for (int a = 0; a < 3; ++a) {
-        glm::dvec3 low = p, high = p;
-        low[a] = std::max(p[a] - 1.0, 0.0);
-        high[a] = std::min(p[a] + 1.0, double(grid.size()[a] - 1));
-        g[a] = (grid.value(high) - grid.value(low)) / (high[a] - low[a]);
-    }
-    return g;
-}
-
-// The documented formula, in the eye frame.
-glm::dvec3 lit(const glm::dvec3& color, const glm::dvec3& n, const glm::dvec3& eye,
-               const glm::dvec3& toEye, const std::vector<TestLight>& lights,
-               const glm::dmat4& view, const VolumeAppearance::Material& m)
-{
-    glm::dvec3 diffuse(m.ambient), specular(0.0);
-    for (const TestLight& light : lights) {
-        const glm::dvec4 position = view * light.position;
-        glm::dvec3 l = glm::dvec3(position) - position.w * eye;
-        const double d = glm::length(l);
-        l /= d;
-        double strength = 1.0;
-        if (position.w != 0.0) strength /= glm::dot(light.attenuation, glm::dvec3(1.0, d, d * d));
-        if (light.cutoffDegrees < 180.0) {
-            const glm::dvec3 axis =
-                glm::normalize(glm::dvec3(view * glm::dvec4(light.direction, 0.0)));
-            const double cosine = glm::dot(-l, axis);
-            strength *= cosine < std::cos(light.cutoffDegrees * M_PI / 180.0)
-                            ? 0.0
-                            : std::pow(std::max(cosine, 0.0), light.exponent);
-        }
-        diffuse += strength * (light.ambient + m.diffuse * std::abs(glm::dot(n, l)) * light.color);
-        const glm::dvec3 h = glm::normalize(l + toEye);
-        specular +=
-            strength * m.specular * std::pow(std::abs(glm::dot(n, h)), m.shininess) * light.color;
-    }
-    return color * diffuse + specular;
-}
-
-// Makes the oracle's volume shade like that. `objectToEye` may be any affine map.
-void light(oracle::Volume& volume, std::shared_ptr<oracle::Grid> grid,
-           const std::vector<TestLight>& lights, const RenderOptions& options,
-           const VolumeAppearance::Material& material)
-{
-    const glm::dmat4 view = support::toGlm(options.view);
-    const glm::dmat3 toEye(view * volume.objectToWorld * glm::inverse(volume.objectToField));
-    const glm::dmat3 normalToEye = glm::inverse(glm::transpose(toEye));
-    const bool perspective = options.projection(3, 3) == 0.0;
-    volume.shade = [=](const glm::dvec3& color, const glm::dvec3& field, const glm::dvec3& eye) {
-        const glm::dvec3 g = normalToEye * gradientOf(*grid, field);
-        const double length = glm::length(g);
-        const glm::dvec3 n = length > 0.0 ? g / length : g;
-        const glm::dvec3 toViewer = perspective ? -glm::normalize(eye) : glm::dvec3(0, 0, 1);
-        return lit(color, n, eye, toViewer, lights, view, material);
-    };
-}
-
-std::vector<TestLight> someLights()
-{
-    TestLight point, sun, spot;
-    point.position = {60, 10, 50, 1};
-    point.attenuation = {0.5, 0.01, 0.0002};
-    point.ambient = {0.05, 0.0, 0.1};
-    sun.position = {-0.6, -0.5, 0.8, 0};
-    sun.color = {0.2, 0.5, 0.9};
-    spot.position = {10, -40, 10, 1};
-    spot.direction = {0.1, 1, 0.05};
-    spot.cutoffDegrees = 60.0; // all of the volume: its edge is not smooth
-    spot.exponent = 4.0;
-    spot.color = {0.9, 0.8, 0.1};
-    return {point, sun, spot};
-}
-
 TEST_F(Shading, SeveralLightsInPerspectiveAndOrthographicViews)
 {
     osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(SIZE), bumps);
@@ -154,7 +47,7 @@ TEST_F(Shading, SeveralLightsInPerspectiveAndOrthographicViews)
             const RenderOptions options = view(perspective);
             TwinVolume twin = makeTwin(voxels, TABLE, technique);
             twin.node->setShading(true);
-            light(twin.oracle, gridOf(*voxels), lights, options, twin.node->getMaterial());
+            lightOracle(twin.oracle, gridOf(*voxels), lights, options, twin.node->getMaterial());
             osg::ref_ptr<osg::Group> scene = new osg::Group;
             for (std::size_t i = 0; i < lights.size(); ++i)
                 scene->addChild(makeSource(lights[i], int(i) + 2, *scene->getOrCreateStateSet()));
@@ -190,7 +83,7 @@ TEST_F(Shading, NormalsFollowAnyAffineTransform)
         scene->addChild(makeSource(lights[i], int(i), *scene->getOrCreateStateSet()));
     scene->addChild(transform);
     twin.oracle.objectToWorld = support::toGlm(matrix);
-    light(twin.oracle, gridOf(*voxels), lights, options, twin.node->getMaterial());
+    lightOracle(twin.oracle, gridOf(*voxels), lights, options, twin.node->getMaterial());
     oracle::Scene expectedScene = oracleScene(twin.oracle);
     expectedScene.tolerance = 1e-7;
     const FloatImage expected = oraclePicture(expectedScene, options);
@@ -272,7 +165,8 @@ TEST_F(Shading, TheHeadLightIsOsgsOrOurs)
         head.color = glm::dvec3(osgLight ? 0.8 : 1.0); // osg::View's default light
         head.ambient = glm::dvec3(0.0);
         oracle::Volume volume = twin.oracle;
-        light(volume, gridOf(*twin.node->getVoxels()), {head}, options, twin.node->getMaterial());
+        lightOracle(volume, gridOf(*twin.node->getVoxels()), {head}, options,
+                    twin.node->getMaterial());
         oracle::Scene expectedScene = oracleScene(volume);
         expectedScene.tolerance = 1e-7;
         const FloatImage image = support::renderScene(twin.node, options);
@@ -321,7 +215,7 @@ TEST_F(Shading, IsosurfacesAreLitAtTheirRoots)
     const FloatImage image = support::renderScene(scene, options);
     support::savePicture(image, "isosurface");
     const auto grid = gridOf(*voxels);
-    light(twin.oracle, grid, lights, options, twin.node->getMaterial());
+    lightOracle(twin.oracle, grid, lights, options, twin.node->getMaterial());
     const oracle::Camera camera = support::oracleCamera(options);
     int hits = 0, wrong = 0;
     for (int y = 0; y < camera.height; ++y)

@@ -1,8 +1,10 @@
 #include "CellRay.h"
 
+#include "AdaptiveStep.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -64,6 +66,12 @@ struct Cubic
     }
 };
 
+void count(const RayIntegration& options, double atVoxel)
+{
+    if (options.tried && atVoxel >= options.betweenVoxel.x && atVoxel <= options.betweenVoxel.y)
+        ++*options.tried;
+}
+
 // Distance along the ray of the next face of a cell on each axis, and from one to the next.
 struct Faces
 {
@@ -101,34 +109,75 @@ glm::dvec4 lightOfPiece(const glm::dvec4& first, const glm::dvec4& second, doubl
     return glm::dvec4(glm::max(end * opacity - change * mean, 0.0), opacity);
 }
 
-CellRay::CellRay(const FractionField& field, const glm::dvec3& beginVoxel,
-                 const glm::dvec3& endVoxel, double lengthUnits, bool nearest)
-    : _nearest(nearest)
+glm::dvec3 RayShading::shade(const glm::dvec3& color, const glm::dvec3& gradient,
+                             const glm::dvec3& toLight, const glm::dvec3& toEye) const
 {
-    const double length = glm::length(endVoxel - beginVoxel);
-    _unitsPerVoxel = lengthUnits / length;
-    const glm::dvec3 rate = (endVoxel - beginVoxel) / length;
-    Faces faces = facesOn(nearest ? beginVoxel + 0.5 : beginVoxel, rate);
-    const auto value = [&](double t) { return float(field(beginVoxel + t * rate)); };
+    const glm::dvec3 n = gradient / std::sqrt(glm::dot(gradient, gradient) + 1e-8);
+    const glm::dvec3 between = toLight + toEye;
+    const glm::dvec3 h = between / std::sqrt(std::max(glm::dot(between, between), 1e-30));
+    const double highlight = std::pow(std::max(std::abs(glm::dot(n, h)), 1e-30), shininess);
+    return color * (ambient + diffuse * std::abs(glm::dot(n, toLight))) + specular * highlight;
+}
+
+CellRay::CellRay(const RayPath& path, const FractionField& field, const GradientField& gradient,
+                 bool nearest)
+    : _toLight(path.toLight), _nearest(nearest)
+{
+    const glm::dvec3 all = path.endVoxel - path.beginVoxel, allUnits = path.voxelToUnits * all;
+    const double length = glm::length(all);
+    _unitsPerVoxel = glm::length(allUnits) / length;
+    _toEye = -glm::normalize(allUnits);
+    const glm::dvec3 rate = all / length;
+    const glm::dmat3 toUnits = glm::inverse(glm::transpose(path.voxelToUnits));
+    Faces faces = facesOn(nearest ? path.beginVoxel + 0.5 : path.beginVoxel, rate);
+    const auto value = [&](double t) { return float(field(path.beginVoxel + t * rate)); };
+    const auto slope = [&](double t) {
+        return glm::vec3(toUnits * gradient(path.beginVoxel + t * rate));
+    };
     constexpr double LEAST = 1e-9; // of a cell's length
     double begin = 0.0;
     float before = nearest ? 0.0f : value(0.0);
+    glm::vec3 slopeBefore(0.0f);
+    if (gradient && !nearest) slopeBefore = slope(0.0);
     while (begin < length) {
         const double end =
             std::min({faces.next.x, faces.next.y, faces.next.z, length - LEAST}) + LEAST;
         for (int axis = 0; axis < 3; ++axis)
             if (faces.next[axis] < end) faces.next[axis] += faces.distance[axis];
+        const double third = (end - begin) / 3.0, middle = 0.5 * (begin + end);
         if (nearest) {
-            _values.emplace_back(value(0.5 * (begin + end)));
+            _values.emplace_back(value(middle));
         } else {
-            const double third = (end - begin) / 3.0;
             const float after = value(end);
             _values.emplace_back(before, value(begin + third), value(end - third), after);
             before = after;
         }
+        if (gradient) {
+            const glm::vec3 d = slope(nearest ? middle : end);
+            const glm::vec3 a = nearest ? d : slopeBefore, b = nearest ? d : slope(begin + third),
+                            c = nearest ? d : slope(end - third);
+            _gradients.push_back(
+                {{a.x, b.x, c.x, d.x}, {a.y, b.y, c.y, d.y}, {a.z, b.z, c.z, d.z}});
+            slopeBefore = d;
+        }
         _ends.push_back(end);
         begin = end;
     }
+}
+
+glm::dvec3 CellRay::gradient(std::size_t cell, double s) const
+{
+    const Gradients& g = _gradients[cell];
+    return {Cubic(glm::dvec4(g.x)).at(s), Cubic(glm::dvec4(g.y)).at(s),
+            Cubic(glm::dvec4(g.z)).at(s)};
+}
+
+glm::dvec4 CellRay::lit(const glm::dvec4& color, std::size_t cell, double s,
+                        const RayIntegration& options) const
+{
+    if (!options.shading || !(color.a > 0.0)) return color;
+    const glm::dvec3 slope = gradient(cell, s);
+    return glm::dvec4(options.shading->shade(glm::dvec3(color), slope, _toLight, _toEye), color.a);
 }
 
 template <class Visit>
@@ -164,7 +213,7 @@ void CellRay::visitPieces(const IntervalTable& table, double longestVoxel, const
                     std::min(longest, std::max(MOST_BITS / std::max(thick, 1e-300), LEAST_PART));
                 const bool isLong = to - s > most;
                 if (isLong) to = s + most;
-                if (to > s && !visit(cubic, s, to, length, interval)) return;
+                if (to > s && !visit(i, cubic, s, to, length, interval)) return;
                 s = to;
                 if (passes && !isLong) interval += rises ? 1 : -1;
             }
@@ -172,53 +221,118 @@ void CellRay::visitPieces(const IntervalTable& table, double longestVoxel, const
     }
 }
 
+glm::dvec2 CellRay::shownPart(const IntervalTable& table) const
+{
+    glm::dvec2 part(lengthVoxel(), 0.0);
+    visitPieces(table, lengthVoxel(),
+                [&](std::size_t cell, const Cubic& cubic, double from, double to, double length,
+                    int interval) {
+                    const double inset = GAUSS * (to - from);
+                    if (table.at(interval, cubic.at(from + inset)).a > 0.0 ||
+                        table.at(interval, cubic.at(to - inset)).a > 0.0) {
+                        part.x = std::min(part.x, cellBegin(cell) + from * length);
+                        part.y = cellBegin(cell) + to * length;
+                    }
+                    return true;
+                });
+    return part.x <= part.y ? part : glm::dvec2(0.0);
+}
+
 glm::dvec4 CellRay::integrate(const IntervalTable& table, double longestVoxel,
-                              double opaqueEnough) const
+                              const RayIntegration& options) const
 {
     glm::dvec4 light(0.0);
     visitPieces(table, longestVoxel,
-                [&](const Cubic& cubic, double from, double to, double length, int interval) {
-                    const double part = to - from;
-                    const glm::dvec4 a = table.at(interval, cubic.at(from + GAUSS * part));
-                    const glm::dvec4 b = table.at(interval, cubic.at(to - GAUSS * part));
-                    light += (1.0 - light.a) * lightOfPiece(a, b, part * length * _unitsPerVoxel);
-                    return 1.0 - light.a > opaqueEnough;
+                [&](std::size_t cell, const Cubic& cubic, double from, double to, double length,
+                    int interval) {
+                    const double part = to - from, s0 = from + GAUSS * part, s1 = to - GAUSS * part;
+                    const glm::dvec4 a = table.at(interval, cubic.at(s0));
+                    const glm::dvec4 b = table.at(interval, cubic.at(s1));
+                    count(options, cellBegin(cell) + 0.5 * (from + to) * length);
+                    light += (1.0 - light.a) * lightOfPiece(lit(a, cell, s0, options),
+                                                            lit(b, cell, s1, options),
+                                                            part * length * _unitsPerVoxel);
+                    return 1.0 - light.a > options.opaqueEnough;
                 });
     return light;
 }
 
-std::size_t CellRay::pieceCount(const IntervalTable& table, double longestVoxel) const
+// A place on a ray that moves on, or back a little.
+class CellRay::Walk
 {
-    std::size_t count = 0;
-    visitPieces(table, longestVoxel, [&](const Cubic&, double, double, double, int) {
-        ++count;
-        return true;
-    });
-    return count;
-}
+public:
+    explicit Walk(const CellRay& ray) : _ray(ray) {}
+
+    double valueAt(double t)
+    {
+        go(t);
+        return Cubic(glm::dvec4(_ray._values[_cell])).at(_s);
+    }
+    glm::dvec4 lit(const glm::dvec4& color, double t, const RayIntegration& options)
+    {
+        if (!options.shading) return color;
+        go(t);
+        return _ray.lit(color, _cell, _s, options);
+    }
+
+private:
+    void go(double t)
+    {
+        const std::vector<double>& ends = _ray._ends;
+        while (_cell + 1 < ends.size() && t > ends[_cell])
+            ++_cell;
+        while (_cell > 0 && t <= ends[_cell - 1])
+            --_cell;
+        const double begin = _ray.cellBegin(_cell);
+        _s = (t - begin) / (ends[_cell] - begin);
+    }
+
+    const CellRay& _ray;
+    std::size_t _cell = 0;
+    double _s = 0.0;
+};
 
 glm::dvec4 CellRay::integrate(const ExtinctionTable& table, double periodVoxel,
-                              double opaqueEnough) const
+                              const RayIntegration& options) const
 {
     const int steps = std::max(1, static_cast<int>(lengthVoxel() / periodVoxel + 0.5));
     const double h = lengthVoxel() / steps;
-    std::size_t cell = 0;
-    double cellBegin = 0.0;
-    const auto at = [&](double t) {
-        while (cell + 1 < _ends.size() && t > _ends[cell])
-            cellBegin = _ends[cell++];
-        return Cubic(glm::dvec4(_values[cell])).at((t - cellBegin) / (_ends[cell] - cellBegin));
-    };
+    Walk walk(*this);
     glm::dvec3 color(0.0);
-    double through = 1.0, before = at(0.0);
-    for (int i = 0; i < steps && through > opaqueEnough; ++i) {
-        const double after = table.integrals ? at((i + 1) * h) : 0.0;
+    double through = 1.0, before = walk.valueAt(0.0);
+    for (int i = 0; i < steps && through > options.opaqueEnough; ++i) {
+        const double middle = (i + 0.5) * h,
+                     after = table.integrals ? walk.valueAt((i + 1) * h) : 0.0;
         const glm::dvec4 c =
-            table.integrals ? table.mean(before, after) : table.at(at((i + 0.5) * h));
+            walk.lit(table.integrals ? table.mean(before, after) : table.at(walk.valueAt(middle)),
+                     middle, options);
+        count(options, middle);
         const double next = through * std::exp2(-c.a * h * _unitsPerVoxel);
         color += (through - next) * glm::dvec3(c);
         through = next;
         before = after;
+    }
+    return glm::dvec4(color, 1.0 - through);
+}
+
+glm::dvec4 CellRay::integrateAdaptively(const ExtinctionTable& table, double periodVoxel,
+                                        const RayIntegration& options) const
+{
+    Walk walk(*this);
+    AdaptiveStep step;
+    glm::dvec3 color(0.0);
+    double through = 1.0, begin = 0.0, before = walk.valueAt(0.0);
+    while (begin < lengthVoxel() && through > options.opaqueEnough) {
+        const double end = std::min(begin + step.stretch * periodVoxel, lengthVoxel());
+        const double after = walk.valueAt(end);
+        const glm::dvec4 c = table.mean(before, after);
+        const double next = through * std::exp2(-c.a * (end - begin) * _unitsPerVoxel);
+        count(options, 0.5 * (begin + end));
+        if (!step.suits(through - next, periodVoxel)) continue;
+        color += (through - next) * glm::dvec3(walk.lit(c, 0.5 * (begin + end), options));
+        through = next;
+        before = after;
+        begin = end;
     }
     return glm::dvec4(color, 1.0 - through);
 }

@@ -21,18 +21,21 @@ namespace {
 constexpr double DOUBT = 0.15;
 // Or where fewer than this show something.
 constexpr std::size_t FEWEST_SHOWN = 400;
+constexpr double LEAP = 4.0;     // what shows nothing is leapt over, but for this, voxels
 constexpr double VISIBLE = 1e-3; // opacity of a ray that shows something
-constexpr double TRUTH = 0.125;  // longest piece of what is taken for the truth, voxels
-constexpr double FINEST = 0.25;  // longest piece that may be chosen
-constexpr double LONGEST = 8.0, SHORTEST = 0.0625; // periods, voxels
+// Longest piece of what is taken for the truth, voxels; normals turn faster than values change.
+constexpr double TRUTH = 0.125, LIT_TRUTH = 1.0 / 32.0;
+constexpr double FINEST = 0.25, LIT_FINEST = 0.0625; // longest piece that may be chosen
+constexpr double LONGEST = 8.0, SHORTEST = 0.0625;   // periods, voxels
 // Errors of few rays, in few directions, are off by this.
 constexpr double SAFETY = 1.5;
 // The part of a tolerance that filtering may take. Squares of errors add, so that it is within what
 // SAFETY leaves.
 constexpr double FILTER_SHARE = 0.25;
-// What a step with integrals costs, in steps without; and a piece, where the table has corners
-// within its range, and where not.
-constexpr double INTEGRAL_COST = 1.25, CORNER_COST = 6.4, PIECE_COST = 1.9;
+// What a step with integrals costs, in steps without, and one that adapts; and a piece, where the
+// table has corners within its range, and where not. What light adds to a sample.
+constexpr double INTEGRAL_COST = 1.25, ADAPTIVE_COST = 1.35, CORNER_COST = 6.4, PIECE_COST = 1.9;
+constexpr double LIGHT_COST = 3.0;
 // A picture has so many rays that differ: what it shows may be off by more than what many show.
 constexpr double VIEW = 500.0;
 // The rays of one direction tell of it as if so many average ones were among them.
@@ -45,6 +48,7 @@ struct ShownRay
 {
     const CellRay* ray;
     std::size_t direction;
+    glm::dvec2 part;  ///< what is not leapt over, voxels
     glm::dvec4 light; ///< premultiplied
 };
 
@@ -54,11 +58,13 @@ class Judge
 public:
     Judge(const PeriodQuestion& question, const std::vector<CellRay>& rays) : _question(question)
     {
+        const double truth = question.shading ? LIT_TRUTH : TRUTH;
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            const double rough = rays[i].integrate(*question.table, LONGEST, VISIBLE).a;
+            const double rough = rays[i].integrate(*question.table, LONGEST, {VISIBLE}).a;
             if (!(rough > VISIBLE)) continue;
-            _rays.push_back({&rays[i], i % RandomRays::DIRECTIONS,
-                             rays[i].integrate(*question.exact, TRUTH, 0.0)});
+            const glm::dvec2 part = rays[i].shownPart(*question.table);
+            _rays.push_back({&rays[i], i % RandomRays::DIRECTIONS, part + glm::dvec2(-LEAP, LEAP),
+                             rays[i].integrate(*question.exact, truth, {0.0, question.shading})});
         }
         _doubts = _rays.size() < FEWEST_SHOWN;
     }
@@ -74,8 +80,9 @@ public:
     {
         double sum = 0.0, squares = 0.0;
         std::array<double, RandomRays::DIRECTIONS> sums{}, counts{};
+        _samples = 0;
         for (const ShownRay& shown : _rays) {
-            const glm::dvec4 d = integrate(*shown.ray, rule, periodVoxel) - shown.light;
+            const glm::dvec4 d = integrate(shown, rule, periodVoxel) - shown.light;
             const double square = 0.25 * glm::dot(d, d);
             sum += square;
             squares += square * square;
@@ -97,41 +104,57 @@ public:
         return upper;
     }
 
-    // Pieces per voxel of a ray.
-    double pieces(double longestVoxel) const
+    // Of the last error(): what its steps or pieces cost, in samples a ray.
+    double cost(RayRule rule) const
     {
-        std::size_t count = 0;
-        double length = 0.0;
-        const std::size_t stride = _rays.size() / 100 + 1;
-        for (std::size_t i = 0; i < _rays.size(); i += stride) {
-            count += _rays[i].ray->pieceCount(*_question.table, longestVoxel);
-            length += _rays[i].ray->lengthVoxel();
-        }
-        return static_cast<double>(count) / std::max(length, 1e-9);
+        const double light = _question.shading ? LIGHT_COST : 0.0;
+        return costOf(rule, light) * static_cast<double>(_samples) /
+               static_cast<double>(std::max<std::size_t>(_rays.size(), 1));
     }
 
 private:
-    glm::dvec4 integrate(const CellRay& ray, RayRule rule, double periodVoxel) const
+    double costOf(RayRule rule, double light) const
     {
-        const double enough = _question.opaqueEnough;
+        const bool corners = _question.table->intervals > 3;
         switch (rule) {
         case RayRule::MIDPOINTS:
-            return ray.integrate(_question.midpoints, periodVoxel, enough);
+            return 1.0 + light;
         case RayRule::INTEGRALS:
-            return ray.integrate(_question.integrals, periodVoxel, enough);
+            return INTEGRAL_COST + light;
+        case RayRule::ADAPTIVE:
+            return ADAPTIVE_COST + light;
+        case RayRule::CELLS:
+            break;
+        }
+        return (corners ? CORNER_COST : PIECE_COST) + 2.0 * light;
+    }
+
+    glm::dvec4 integrate(const ShownRay& shown, RayRule rule, double periodVoxel)
+    {
+        const CellRay& ray = *shown.ray;
+        const RayIntegration options{_question.opaqueEnough, _question.shading, &_samples,
+                                     shown.part};
+        switch (rule) {
+        case RayRule::MIDPOINTS:
+            return ray.integrate(_question.midpoints, periodVoxel, options);
+        case RayRule::INTEGRALS:
+            return ray.integrate(_question.integrals, periodVoxel, options);
+        case RayRule::ADAPTIVE:
+            return ray.integrateAdaptively(_question.integrals, periodVoxel, options);
         case RayRule::CELLS:
             break;
         }
         const bool whole = periodVoxel >= PeriodChoice::ONE_PIECE;
-        return ray.integrate(*_question.table, whole ? LONGEST : periodVoxel, enough);
+        return ray.integrate(*_question.table, whole ? LONGEST : periodVoxel, options);
     }
 
     const PeriodQuestion& _question;
     std::vector<ShownRay> _rays;
+    std::size_t _samples = 0;
     bool _doubts = false;
 };
 
-// A choice and what it costs, in samples per voxel of a ray.
+// A choice and what it costs, in samples a ray.
 struct Candidate
 {
     PeriodChoice choice;
@@ -143,16 +166,14 @@ Candidate cellsFor(const PeriodQuestion& q, Judge& judge)
 {
     Candidate candidate;
     candidate.choice.rule = RayRule::CELLS;
-    const bool corners = q.table->intervals > 3;
-    for (double longest = PeriodChoice::ONE_PIECE; longest > 0.9 * FINEST; longest *= 0.5) {
+    const double finest = q.shading ? LIT_FINEST : FINEST;
+    for (double longest = PeriodChoice::ONE_PIECE; longest > 0.9 * finest; longest *= 0.5) {
         candidate.choice.periodVoxel = longest;
         candidate.choice.error = judge.error(RayRule::CELLS, longest);
+        candidate.cost = judge.cost(RayRule::CELLS);
         candidate.keeps = candidate.choice.error <= q.tolerance;
         if (candidate.keeps) break;
     }
-    const double longest = candidate.choice.periodVoxel;
-    candidate.cost = (corners ? CORNER_COST : PIECE_COST) *
-                     judge.pieces(longest < PeriodChoice::ONE_PIECE ? longest : LONGEST);
     return candidate;
 }
 
@@ -161,27 +182,29 @@ Candidate cellsFor(const PeriodQuestion& q, Judge& judge)
 Candidate stepsFor(const PeriodQuestion& q, Judge& judge, RayRule rule, double mostCost)
 {
     constexpr double RATIO = 0.7937005259840998; // 2^(-1/3)
-    const double stepCost = rule == RayRule::INTEGRALS ? INTEGRAL_COST : 1.0;
-    const double shortest = std::max(SHORTEST, stepCost / mostCost);
     Candidate candidate;
     candidate.choice.rule = rule;
     candidate.choice.error = std::numeric_limits<double>::infinity();
     double longerError = 0.0;
-    for (double period = LONGEST; period > 0.999 * shortest; period *= RATIO) {
+    for (double period = LONGEST; period > 0.999 * SHORTEST; period *= RATIO) {
         const double error = judge.error(rule, period);
         candidate.choice.periodVoxel = period;
         candidate.choice.error = error;
+        candidate.cost = judge.cost(rule);
         candidate.keeps = error <= q.tolerance;
         if (candidate.keeps) {
             // Between this one and the longer one the error is taken for a power of the period.
+            double longer = 1.0;
             if (longerError > q.tolerance && error > 0.0)
-                candidate.choice.periodVoxel *= std::pow(
-                    1.0 / RATIO, std::log(q.tolerance / error) / std::log(longerError / error));
+                longer = std::pow(1.0 / RATIO,
+                                  std::log(q.tolerance / error) / std::log(longerError / error));
+            candidate.choice.periodVoxel *= longer;
+            candidate.cost /= longer;
             break;
         }
+        if (candidate.cost > mostCost) break;
         longerError = error;
     }
-    candidate.cost = stepCost / candidate.choice.periodVoxel;
     return candidate;
 }
 
@@ -215,6 +238,7 @@ PeriodAnswer choosePeriod(const PeriodQuestion& question, const std::vector<Cell
         if (isBetter(steps, best)) best = steps;
     };
     consider(RayRule::MIDPOINTS, question.midpoints);
+    consider(RayRule::ADAPTIVE, question.integrals);
     consider(RayRule::INTEGRALS, question.integrals);
     return {best.choice, judge.doubts()};
 }
@@ -223,7 +247,7 @@ PeriodChoice choosePeriod(const PeriodQuestion& question, const FractionField& f
                           const Box3d& box, const glm::dmat3& voxelToUnits, bool nearest)
 {
     if (box.empty()) return choosePeriod(question, {}).choice;
-    RandomRays random(box, voxelToUnits, nearest);
+    RandomRays random(box, voxelToUnits, nearest, question.shading != nullptr);
     std::vector<CellRay> rays;
     std::size_t cells = 0;
     PeriodAnswer answer;

@@ -19,6 +19,7 @@ enum class RayRule
 {
     MIDPOINTS, ///< equal steps, each with the table's entry at its middle
     INTEGRALS, ///< equal steps, each with the table's mean over the values between its ends
+    ADAPTIVE,  ///< the same of steps that adapt to the light that they give: see AdaptiveStep
     CELLS      ///< pieces of cells that end at corners of the table
 };
 
@@ -52,6 +53,7 @@ struct PeriodQuestion
     const IntervalTable* exact = nullptr; ///< the same table, cut at all of its points
     bool cells = true;                    ///< whether RayRule::CELLS may be chosen
     double opaqueEnough = 0.0;            ///< what is left of the light where rays end
+    const RayShading* shading = nullptr;  ///< null: not lit
 };
 
 /// Of choosePeriod(): a choice, and whether more rays would make another one likely.

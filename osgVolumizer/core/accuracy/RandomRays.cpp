@@ -10,13 +10,39 @@
 namespace osgVolumizer {
 namespace core {
 
-RandomRays::RandomRays(const Box3d& box, const glm::dmat3& voxelToUnits, bool nearest)
-    : _box(box), _samples(box), _voxelToUnits(voxelToUnits), _nearest(nearest)
+namespace {
+
+// Central differences over one sample to each side, less at the ends of a box.
+glm::dvec3 centralDifferences(const FractionField& field, const Box3d& box, const glm::dvec3& p)
+{
+    glm::dvec3 result(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 low = p, high = p;
+        low[axis] = std::max(p[axis] - 1.0, box.min[axis]);
+        high[axis] = std::min(p[axis] + 1.0, box.max[axis]);
+        const double length = high[axis] - low[axis];
+        if (length > 0.0) result[axis] = (field(high) - field(low)) / length;
+    }
+    return result;
+}
+
+} // namespace
+
+RandomRays::RandomRays(const Box3d& box, const glm::dmat3& voxelToUnits, bool nearest, bool lit)
+    : _box(box), _samples(box), _voxelToUnits(voxelToUnits), _nearest(nearest), _lit(lit)
 {
     // A plane of samples has rays, too.
     constexpr double LEAST = 1e-3;
     _box.min -= LEAST;
     _box.max += LEAST;
+}
+
+glm::dvec3 RandomRays::randomDirection()
+{
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    const double z = 2.0 * unit(_random) - 1.0, angle = glm::two_pi<double>() * unit(_random);
+    const double s = std::sqrt(1.0 - z * z);
+    return {s * std::cos(angle), s * std::sin(angle), z};
 }
 
 CellRay RandomRays::next(const FractionField& field)
@@ -46,11 +72,17 @@ CellRay RandomRays::next(const FractionField& field)
             leave = std::min(leave, std::max(a, b));
         }
         if (!(leave - enter > 1e-6 * radius)) continue;
-        const glm::dvec3 begin = point + enter * direction, end = point + leave * direction;
+        RayPath path{point + enter * direction, point + leave * direction, _voxelToUnits};
         const FractionField held = [this, &field](const glm::dvec3& p) {
             return field(glm::clamp(p, _samples.min, _samples.max));
         };
-        return CellRay(held, begin, end, glm::length(_voxelToUnits * (end - begin)), _nearest);
+        if (!_lit) return CellRay(path, held, nullptr, _nearest);
+        const bool fromEye = _count / DIRECTIONS % 2 == 0;
+        path.toLight = fromEye ? -glm::normalize(_voxelToUnits * direction) : randomDirection();
+        const GradientField gradient = [this, &held](const glm::dvec3& p) {
+            return centralDifferences(held, _samples, glm::clamp(p, _samples.min, _samples.max));
+        };
+        return CellRay(path, held, gradient, _nearest);
     }
 }
 

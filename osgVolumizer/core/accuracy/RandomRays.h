@@ -22,15 +22,19 @@ public:
 
     /// Expects a box (voxel frame) that is not empty.
     /// \param voxelToUnits a vector of the voxel frame -> opacity units
-    RandomRays(const Box3d& box, const glm::dmat3& voxelToUnits, bool nearest);
+    /// \param lit whether rays are to have gradients, central differences over a sample's
+    /// distance, and a light: half of them that of the eye, others one from anywhere
+    RandomRays(const Box3d& box, const glm::dmat3& voxelToUnits, bool nearest, bool lit = false);
 
-    /// The next one; asks the field some times a voxel.
+    /// The next one; asks the field some times a voxel, and seven times as often where it is lit.
     CellRay next(const FractionField& field);
 
 private:
+    glm::dvec3 randomDirection();
+
     Box3d _box, _samples; ///< a little larger than what has samples, and that
     glm::dmat3 _voxelToUnits;
-    bool _nearest;
+    bool _nearest, _lit;
     std::mt19937 _random{7};
     std::size_t _count = 0;
 };

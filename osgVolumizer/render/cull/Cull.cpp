@@ -72,6 +72,7 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
             ? chooseTable(appearance, *volume.prepared, volume.geometry->getScalarRange())
             : chooseTable(appearance, *volume.prepared, precision);
     volume.exactFiltering = choice.exactFiltering;
+    volume.adaptsSteps = choice.adaptive;
     volume.keepsError = choice.periodVoxel.has_value();
     if (choice.periodVoxel) volume.sampling.periodVoxel = glm::dvec3(*choice.periodVoxel);
     Reasons reasons;

@@ -20,8 +20,9 @@ namespace render {
 
 namespace {
 
-// What a frame may spend on sampling.
-constexpr std::chrono::milliseconds PER_FRAME(8);
+// What a frame may spend on sampling; lit rays take seven times as many samples.
+constexpr std::chrono::milliseconds PER_FRAME(8), LIT_PER_FRAME(14);
+constexpr std::size_t FEWER_LIT = 3; // rays
 
 using Rays = std::vector<core::CellRay>;
 
@@ -129,8 +130,11 @@ struct SamplingChoices::Sampled
     std::size_t cells = 0;
     const core::Box3d box; ///< voxel frame
 
-    Sampled(const core::Box3d& shown, const glm::dmat3& frameToUnits, bool nearest)
-        : random(shown, frameToUnits, nearest), box(shown)
+    const bool lit;
+
+    Sampled(const core::Box3d& shown, const SamplingQuestion& q)
+        : random(shown, q.frameToUnits, q.nearest, q.shading.has_value()), box(shown),
+          lit(q.shading.has_value())
     {
     }
 };
@@ -147,14 +151,20 @@ struct SamplingChoices::Answer
     // Never changed:
     std::vector<glm::vec4> midpoints, integrals;
     std::shared_ptr<const core::IntervalTable> table;
+    std::optional<core::RayShading> shading;
     LookupTable::Function function;
     core::PeriodQuestion question;
     std::shared_ptr<Sampled> sampled; ///< null where nothing shows
 
     Answer(const SamplingQuestion& q, std::shared_ptr<Sampled> rays)
         : midpoints(texelsOf(q.midpoints)), integrals(texelsOf(q.integrals)),
-          table(q.intervals.intervals), function(q.intervals.function), sampled(std::move(rays))
+          table(q.intervals.intervals), shading(q.shading), function(q.intervals.function),
+          sampled(std::move(rays))
     {
+        if (shading) {
+            question.shading = &*shading;
+            wanted /= FEWER_LIT;
+        }
         question.tolerance = q.tolerance;
         question.opaqueEnough = q.opaqueEnough;
         question.cells = q.cells;
@@ -202,7 +212,7 @@ void decide(SamplingChoices::Answer& answer, const Rays& rays, bool mayGrow)
 // A frame's part: true when there are as many rays as are wanted.
 bool sample(SamplingChoices::Sampled& sampled, Reader& reader, std::size_t wanted)
 {
-    const auto end = std::chrono::steady_clock::now() + PER_FRAME;
+    const auto end = std::chrono::steady_clock::now() + (sampled.lit ? LIT_PER_FRAME : PER_FRAME);
     const auto enough = [&]() {
         return sampled.rays->size() >= wanted || sampled.cells >= core::MOST_RAY_CELLS;
     };
@@ -227,22 +237,28 @@ SamplingChoices::~SamplingChoices()
 bool SamplingChoices::DataKey::operator==(const DataKey& o) const
 {
     return layoutCount == o.layoutCount && modified == o.modified &&
-           frameToUnits == o.frameToUnits && box == o.box && nearest == o.nearest;
+           frameToUnits == o.frameToUnits && box == o.box && nearest == o.nearest && lit == o.lit;
 }
 
 bool SamplingChoices::Key::operator==(const Key& o) const
 {
     return midpointsId == o.midpointsId && integralsId == o.integralsId &&
            intervalsId == o.intervalsId && tolerance == o.tolerance && cells == o.cells &&
-           data == o.data;
+           shading == o.shading && data == o.data;
 }
 
 // What shows something is looked for once for each question, not in every frame.
 std::shared_ptr<SamplingChoices::Answer> SamplingChoices::answerTo(const Voxels& voxels,
                                                                    const SamplingQuestion& q)
 {
-    DataKey data{voxels.getLayoutCount(), modifiedCount(voxels), q.frameToUnits, q.box, q.nearest};
-    const Key key{q.midpoints.id, q.integrals.id, q.intervals.id, q.tolerance, q.cells, data};
+    DataKey data{voxels.getLayoutCount(), modifiedCount(voxels), q.frameToUnits, q.box, q.nearest,
+                 q.shading.has_value()};
+    glm::dvec4 shading(0.0);
+    if (q.shading)
+        shading = {q.shading->ambient, q.shading->diffuse, q.shading->specular,
+                   q.shading->shininess};
+    const Key key{
+        q.midpoints.id, q.integrals.id, q.intervals.id, q.tolerance, q.cells, shading, data};
     {
         std::lock_guard<std::mutex> lock(_mutex);
         if (const auto* known = _answers.find(key)) return *known;
@@ -253,9 +269,7 @@ std::shared_ptr<SamplingChoices::Answer> SamplingChoices::answerTo(const Voxels&
     std::shared_ptr<Sampled> sampled;
     if (!data.box.empty()) {
         const auto* rays = _sampled.find(data);
-        sampled = rays ? *rays
-                       : _sampled.add(
-                             data, std::make_shared<Sampled>(data.box, q.frameToUnits, q.nearest));
+        sampled = rays ? *rays : _sampled.add(data, std::make_shared<Sampled>(data.box, q));
     }
     return _answers.add(key, std::make_shared<Answer>(q, sampled));
 }
@@ -286,8 +300,8 @@ std::optional<core::PeriodChoice> SamplingChoices::get(const Voxels& voxels,
     }
     if (!sample(sampled, reader, answer->wanted)) return std::nullopt;
     sampled.shared = true;
-    const bool mayGrow =
-        2 * answer->wanted <= core::MOST_RAYS && sampled.cells < core::MOST_RAY_CELLS;
+    const bool mayGrow = 2 * answer->wanted <= core::MOST_RAYS / (sampled.lit ? FEWER_LIT : 1) &&
+                         sampled.cells < core::MOST_RAY_CELLS;
     const std::shared_ptr<const Rays> rays = sampled.rays;
     const auto decision = std::make_shared<Decision>(answer);
     lock.unlock();

@@ -8,6 +8,7 @@
 #include "../../core/geometry/Box.h"
 
 #include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -29,6 +30,7 @@ struct SamplingQuestion
     glm::dmat3 frameToUnits{1.0};
     core::Box3d box; ///< voxel frame; of the region
     bool nearest = false;
+    std::optional<core::RayShading> shading; ///< none: not lit
 };
 
 /// Keeps the answers of core::choosePeriod() to the last few questions. Frames do not wait for
@@ -55,7 +57,7 @@ private:
         std::uint64_t modified;
         glm::dmat3 frameToUnits;
         core::Box3d box;
-        bool nearest;
+        bool nearest, lit;
         bool operator==(const DataKey& o) const;
     };
     struct Key
@@ -63,7 +65,8 @@ private:
         unsigned midpointsId, integralsId, intervalsId;
         double tolerance;
         bool cells;
-        DataKey data; ///< with the box of the region
+        glm::dvec4 shading; ///< ambient, diffuse, specular, shininess; nothing where it is not lit
+        DataKey data;       ///< with the box of the region
         bool operator==(const Key& o) const;
     };
 

@@ -49,6 +49,12 @@ SamplingQuestion questionFor(const VolumeAppearance& appearance, const PreparedG
     question.frameToUnits = voxelToObject(voxels, prepared) / appearance.getEffectiveOpacityUnit();
     question.box = prepared.voxelFrame ? prepared.regionBox : voxels.getLayout().extent();
     question.nearest = appearance.getInterpolation() == A::NEAREST;
+    Reasons ofOthers;
+    const A::RayFunction function = usedRayFunction(appearance, prepared, ofOthers);
+    if (usesShading(appearance, prepared, function, ofOthers)) {
+        const A::Material& m = appearance.getMaterial();
+        question.shading = core::RayShading{m.ambient, m.diffuse, m.specular, m.shininess};
+    }
     return question;
 }
 
@@ -62,6 +68,7 @@ core::PeriodChoice safeChoice(const SamplingQuestion& question)
         const double tolerance = question.tolerance;
         choice.rule = core::RayRule::CELLS;
         choice.periodVoxel = tolerance >= 3e-3 ? choice.ONE_PIECE : tolerance >= 2e-4 ? 0.5 : 0.25;
+        if (question.shading) choice.periodVoxel *= 0.25; // normals turn faster than values change
     } else {
         choice.rule =
             question.integrals.texture ? core::RayRule::INTEGRALS : core::RayRule::MIDPOINTS;
@@ -88,13 +95,15 @@ TableChoice chooseTable(const VolumeAppearance& appearance, const PreparedGeomet
     const core::PeriodChoice made = known ? *known : safeChoice(question);
     TableChoice choice;
     choice.table = made.rule == core::RayRule::CELLS       ? question.intervals
-                   : made.rule == core::RayRule::INTEGRALS ? question.integrals
-                                                           : question.midpoints;
+                   : made.rule == core::RayRule::MIDPOINTS ? question.midpoints
+                                                           : question.integrals;
+    choice.adaptive = made.rule == core::RayRule::ADAPTIVE;
     choice.periodVoxel = made.periodVoxel;
     choice.refining = !known;
     choice.expectedError = made.error;
-    choice.exactFiltering = !question.nearest && ofTextures.filterWeight > 0.0 &&
-                            (!known || !made.permits(ofTextures.filterWeight, question.tolerance));
+    choice.exactFiltering =
+        !question.nearest && ofTextures.filterWeight > 0.0 &&
+        (!known || question.shading || !made.permits(ofTextures.filterWeight, question.tolerance));
     return choice;
 }
 

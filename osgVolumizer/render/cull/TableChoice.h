@@ -13,6 +13,7 @@ struct TableChoice
     TableTexture table;
     /// For an error tolerance; none where none is asked for, or it cannot be kept.
     std::optional<double> periodVoxel;
+    bool adaptive = false;       ///< steps are as long as the light that they give allows
     bool exactFiltering = false; ///< filtering as precise as that of textures would not keep it
     double expectedError = 0.0;  ///< root mean square; 0: not known
     bool refining = false;       ///< this one is safe; a cheaper one is being looked for

@@ -20,6 +20,7 @@ namespace render {
 namespace {
 
 constexpr int MOST_OTHER_STEPS = 1 << 16; // of one member
+constexpr int MOST_TRIES = 8;             // for a period, of steps that adapt
 
 constexpr unsigned FIRST_MEMBER_UNIT = UNIT_CELLS; // before are those of the march
 
@@ -130,14 +131,19 @@ bool setMembers(const FusedDrawing& drawing, const osg::Program::PerContextProgr
     const std::vector<FusedMember>& members = drawing.part.fused->members;
     Units units(drawing.resources.limits.textureUnits);
     int mostSteps = 0;
-    double opaqueEnough = 1.0;
+    bool adapt = false;
+    double opaqueEnough = 1.0, mostWeight = 1.0;
     for (std::size_t i = 0; i < members.size(); ++i) {
         const Uniforms uniforms(gl, program, memberSuffix(i));
         if (!setMarched(drawing, members[i], uniforms, units)) return false;
-        opaqueEnough = std::min(opaqueEnough, members[i].part->look->opaqueEnough);
+        const VolumeLook& look = *members[i].part->look;
+        opaqueEnough = std::min(opaqueEnough, look.opaqueEnough);
         // What it is cut into, and its paints cut besides.
-        mostSteps +=
-            members[i].part->look->maximumSteps + 2 * (members[i].part->features.paintCount + 1);
+        mostSteps += look.maximumSteps + 2 * (members[i].part->features.paintCount + 1);
+        if (look.features.adaptive) {
+            mostWeight = std::min(mostWeight, look.mostWeight);
+            adapt = true;
+        }
         // Steps end with tetrahedra, and pieces, too.
         if (members[i].part->features.tetrahedra || members[i].part->features.cells)
             mostSteps += MOST_OTHER_STEPS;
@@ -146,8 +152,9 @@ bool setMembers(const FusedDrawing& drawing, const osg::Program::PerContextProgr
         drawing.renderInfo.getState()->haveAppliedTextureAttribute(unit,
                                                                    osg::StateAttribute::TEXTURE);
     const Uniforms uniforms(gl, program);
-    uniforms.set("mostSteps", static_cast<float>(mostSteps));
+    uniforms.set("mostSteps", static_cast<float>(adapt ? MOST_TRIES * mostSteps : mostSteps));
     uniforms.set("opaqueEnough", static_cast<float>(opaqueEnough));
+    uniforms.set("mostWeight", static_cast<float>(mostWeight));
     return true;
 }
 

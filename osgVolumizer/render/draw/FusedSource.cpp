@@ -101,7 +101,7 @@ std::string marchSource(const std::vector<ProgramFeatures>& members, bool inOrde
 {
     std::string source;
     std::vector<Names> names;
-    bool surfaces = false, pieces = false;
+    bool surfaces = false, pieces = false, adapt = false;
     for (std::size_t i = 0; i < members.size(); ++i) {
         const ProgramFeatures features = memberFeatures(members[i], inOrder);
         const std::string defines = features.defines() + (inOrder ? "" : "#define MEMBER\n");
@@ -110,11 +110,13 @@ std::string marchSource(const std::vector<ProgramFeatures>& members, bool inOrde
         source += undefined(defines) + defines +
                   withSuffix(code, names.back().suffix, names.back().names) + undefined(defines);
         surfaces = surfaces || rowOf(features.rayFunction).showsIsoValueOnly;
+        adapt = adapt || features.adaptive;
         pieces = pieces || (features.cells && !features.tetrahedra);
     }
     if (inOrder) std::reverse(names.begin(), names.end());
     if (surfaces) source += "#define SURFACES\n";
     if (pieces && !inOrder) source += "#define PIECES\n";
+    if (adapt && !inOrder) source += "#define STEPS_ADAPT\n";
     return source + forEach(shaderSource(inOrder ? "inorder.glsl" : "fused.glsl"), names);
 }
 

@@ -31,6 +31,7 @@ constexpr Flag FLAGS[] = {
     {&ProgramFlags::before, "BEFORE"},
     {&ProgramFlags::preIntegrated, "PREINTEGRATED"},
     {&ProgramFlags::shortRuns, "SHORT_RUNS"},
+    {&ProgramFlags::adaptive, "ADAPTIVE"},
     {&ProgramFlags::cells, "CELLS"},
     {&ProgramFlags::corners, "CORNERS"},
     {&ProgramFlags::smoothTable, "SMOOTH_TABLE"},

@@ -26,6 +26,7 @@ struct ProgramFlags
     bool before = false;                 ///< look samples up, then interpolate
     bool preIntegrated = false;          ///< look runs of values up
     bool shortRuns = false;              ///< look short runs up as single values
+    bool adaptive = false;               ///< runs as long as the light that they give allows
     bool cells = false;                  ///< split rays at faces of cells and corners of the table
     bool corners = false;                ///< the table has some within its range
     bool smoothTable = false;            ///< interpolate between entries

@@ -33,6 +33,7 @@ struct VolumeLook
     double step = 1.0;                    ///< eye units of depth between samples
     double voxelsPerSample = 1.0;         ///< along the view axis
     double stepsPerLength = 0.0;          ///< of the frame, where an error is kept; else 0
+    double mostWeight = 0.0;              ///< of a step: see core::AdaptiveStep; where steps adapt
     int maximumSteps = 1;
     double opaqueEnough = 3e-5;                 ///< what is left of the light where rays end
     glm::vec3 regionMin{0.0f}, regionMax{0.0f}; ///< slabs: box of the whole volume (frame)

@@ -89,6 +89,7 @@ void setSegment(const Uniforms& uniforms, const VolumePart& part)
     const VolumeLook& look = *part.look;
     uniforms.set("stepsPerDepth", static_cast<float>(1.0 / part.step));
     uniforms.set("stepsPerLength", static_cast<float>(look.stepsPerLength));
+    uniforms.set("mostWeight", static_cast<float>(look.mostWeight));
     uniforms.set("maximumSteps", static_cast<float>(look.maximumSteps));
     uniforms.set("opaqueEnough", static_cast<float>(look.opaqueEnough));
     if (part.features.splitDepth) uniforms.set("inFrontOfSplit", part.inFrontOfSplit ? 1 : 0);

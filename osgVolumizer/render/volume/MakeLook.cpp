@@ -7,6 +7,8 @@
 #include "PixelFootprint.h"
 #include "SettingsInForce.h"
 
+#include "../../core/accuracy/AdaptiveStep.h"
+
 #include <osgUtil/CullVisitor>
 
 #include <glm/matrix.hpp>
@@ -96,6 +98,7 @@ void setInterpolation(const VolumeInstance& volume, const TableTexture& table,
                      (appearance.getExactFiltering() || volume.exactFiltering);
     features.before = looksUpBefore(appearance, features.rayFunction, interpolation);
     features.preIntegrated = table.integrals;
+    features.adaptive = volume.adaptsSteps && table.integrals;
     features.cells = table.intervals != nullptr;
     features.corners = features.cells && table.intervals->intervals > 3;
     features.shortRuns = table.integrals && table.shortRuns;
@@ -210,6 +213,7 @@ std::shared_ptr<const VolumeLook> makeLook(const VolumeInstance& volume, const T
     features.blendsSteps = volume.steps.blended;
     if (features.voxels) setInterpolation(volume, table, look->voxelsPerSample, features, reasons);
     look->opaqueEnough = opaqueEnough(appearance, *look);
+    look->mostWeight = core::AdaptiveStep::WEIGHT * look->voxelsPerSample;
     reportReasons(appearance, reasons);
     if (features.slab) {
         look->regionMin = glm::vec3(prepared.regionBox.min);

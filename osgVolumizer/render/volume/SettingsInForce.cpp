@@ -269,11 +269,11 @@ bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry
     Reasons ofOthers;
     const auto function = usedRayFunction(appearance, prepared, ofOthers);
     if (usesSlabs(appearance, prepared) && appearance.getVoxels()->getComponents() == 1 &&
-        rowOf(function).integratesLight && !usesShading(appearance, prepared, function, ofOthers) &&
+        rowOf(function).integratesLight &&
         appearance.getLookup() != VolumeAppearance::BEFORE_INTERPOLATION)
         return true;
-    reasons.push_back("an error tolerance needs slabs, composited and not lit, and voxels of one "
-                      "component looked up after interpolation; the sampling period is used");
+    reasons.push_back("an error tolerance needs slabs, composited, and voxels of one component "
+                      "looked up after interpolation; the sampling period is used");
     return false;
 }
 

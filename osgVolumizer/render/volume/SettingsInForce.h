@@ -47,8 +47,8 @@ double opaqueEnoughFor(double tolerance);
 /// Whether samples are looked up before they are interpolated.
 bool looksUpBefore(const VolumeAppearance& appearance, VolumeAppearance::RayFunction function,
                    VolumeAppearance::Interpolation interpolation);
-/// Whether periods can be chosen for an error tolerance: composited slabs without light, of voxels
-/// of one component that are looked up after interpolation. Expects voxels.
+/// Whether periods can be chosen for an error tolerance: composited slabs of voxels of
+/// one component that are looked up after interpolation. Expects voxels.
 bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry& prepared,
                       Reasons& reasons);
 

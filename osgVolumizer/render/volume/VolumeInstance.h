@@ -45,6 +45,7 @@ struct VolumeInstance
     core::SamplingParameters sampling;
     bool exactFiltering = false; ///< for an error tolerance, whatever the appearance says
     bool keepsError = false;     ///< the period was chosen for an error tolerance
+    bool adaptsSteps = false;    ///< likewise: steps are as long as the light they give allows
     double rayDistance = 1.0;    ///< pixels between rays, where all of the volume is drawn at once
     std::uint64_t viewId = 0;    ///< see viewIdOf()
     TimeSteps steps;             ///< of voxels that have several

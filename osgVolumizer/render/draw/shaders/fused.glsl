@@ -41,16 +41,24 @@ vec4 lightBetween(float tNear, float tFar)
 #pragma each addPoints(t, next, first, second);
         vec4 piece = lightOfPiece(vec4(first.rgb / max(first.a, 1e-30), first.a),
                                   vec4(second.rgb / max(second.a, 1e-30), second.a), dt);
-        color += through * piece.rgb;
-        through -= through * piece.a;
+        float behind = through - through * piece.a;
+        vec3 light = through * piece.rgb;
 #else
         vec4 sum = vec4(0.0);
 #pragma each addLight(middle, dt, sum);
         float behind = through * exp2(-sum.a * dt);
-        color += (through - behind) * sum.rgb / max(sum.a, 1e-30);
-        through = behind;
+        vec3 light = (through - behind) * sum.rgb / max(sum.a, 1e-30);
 #endif
+#ifdef STEPS_ADAPT
+        bool added = suitsStep(through - behind);
+        color += added ? light : vec3(0.0);
+        through = added ? behind : through;
+        t = added ? next : t;
+#else
+        color += light;
+        through = behind;
         t = next;
+#endif
     } while (t < end && --left > 0.0 && through > TOGETHER_ENOUGH);
 #ifdef SURFACES
     if (surface >= tNear && surface <= tFar) {

@@ -25,6 +25,23 @@ vec4 lightOfPiece(vec4 first, vec4 second, float units)
     return vec4(max(end * opacity - change * (0.5 * (opacityOf(d0) + opacityOf(d1))), 0.0), opacity);
 }
 
+// Steps that adapt are as long as the light that they give allows: what a step is off by grows with its light and the
+// square of its length. The same as core/accuracy/AdaptiveStep.
+uniform float mostWeight; // of light, in a step of one period
+float stretch = 1.0;      // length of the next step, periods
+#define SHORTEST_STRETCH 0.25
+#define LONGEST_STRETCH 3.0
+
+// Whether a step is short enough for the light that it gives; sets the length of the next one, or of another try.
+bool suitsStep(float light)
+{
+    float weight = light * stretch * stretch;
+    bool tooLong = weight > mostWeight && stretch > SHORTEST_STRETCH;
+    float longer = 8.0 * weight < mostWeight ? min(2.0 * stretch, LONGEST_STRETCH) : stretch;
+    stretch = tooLong ? max(0.5 * stretch, SHORTEST_STRETCH) : longer;
+    return !tooLong;
+}
+
 #ifdef COUNT_SAMPLES
 float sampleCount = 0.0;
 #define COUNT_SAMPLE sampleCount += 1.0;

@@ -3,6 +3,11 @@
 
 vec3 memberOrigin, memberDirection; // the pixel's ray in its frame
 float period; // depth between samples; infinite where one sample stands for all
+#ifdef ADAPTIVE
+#define STEP (period * stretch)
+#else
+#define STEP (period * min(stretch, 1.0))
+#endif
 vec2 segment; // the part of the ray that is stepped through; steps end at its ends
 vec2 shown;   // the part of that which may show something
 vec3 placeOrigin, placeRate; // the ray as places
@@ -67,7 +72,7 @@ void cutStep(float t, inout float end)
             crossTetrahedron();
         }
     }
-    float next = partBegin > t ? partBegin : min(t + period, left.depth);
+    float next = partBegin > t ? partBegin : min(t + STEP, left.depth);
     end = min(end, hasPart ? next : max(left.depth, t));
 }
 #else
@@ -75,7 +80,7 @@ void cutStep(float t, inout float end)
 void cutStep(float t, inout float end)
 {
     float ahead = t < segment.x ? segment.x : 1e30;
-    end = min(end, t >= segment.x && t < segment.y ? min(t + period, segment.y) : ahead);
+    end = min(end, t >= segment.x && t < segment.y ? min(t + STEP, segment.y) : ahead);
 #ifdef PAINTED
     end = nextCut(memberOrigin, memberDirection, t, end);
 #endif

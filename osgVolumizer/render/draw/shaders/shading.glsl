@@ -59,7 +59,8 @@ vec3 shade(vec3 color, vec3 place, vec3 eye, vec3 toEye)
     // No direction where nothing varies, without a jump to it.
     n *= inversesqrt(dot(n, n) + 1e-8);
     vec3 diffuse = vec3(material.x), specular = vec3(0.0);
-    for (int i = 0; i < lightCount; ++i) {
+    int i = 0; // there is one at least
+    do {
         vec3 l = lightPosition[i].xyz - lightPosition[i].w * eye;
         float distance = length(l);
         l /= max(distance, 1e-30);
@@ -74,7 +75,7 @@ vec3 shade(vec3 color, vec3 place, vec3 eye, vec3 toEye)
         diffuse += strength * (lightAmbient[i] + material.y * abs(dot(n, l)) * lightDiffuse[i]);
         float highlight = pow(max(abs(dot(n, h)), 1e-30), material.w);
         specular += strength * material.z * highlight * lightSpecular[i];
-    }
+    } while (++i < lightCount);
     return color * diffuse + specular;
 }
 #endif

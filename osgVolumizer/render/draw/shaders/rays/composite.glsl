@@ -93,16 +93,25 @@ void addSurface(float t, inout vec3 color, inout float through) {}
 #elif defined(SLAB) && defined(PREINTEGRATED)
 uniform float stride; // steps taken as one: see BrickBatch
 
-// Adds the piece of the ray from the last place to this one, where the depth is t.
-void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float unitsPerDepth,
+// Adds the piece of the ray from the last place to this one, where the depth is t; false where it is to be a shorter one.
+bool addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float unitsPerDepth,
             inout float entry, inout vec4 integral, inout vec4 light)
 {
     float nextEntry = tableEntryAfter(entry, place);
     vec4 nextIntegral = tableIntegral(nextEntry);
     vec4 c = classifyRun(entry, integral, nextEntry, nextIntegral);
+    COUNT_SAMPLE
+#ifdef ADAPTIVE
+    c.a *= keptAbout(origin, direction, t - 0.5 * depth, depth);
+#else
     c.a *= keptUntil(cutPoint(origin, direction, t));
+#endif
 #ifdef TETRAHEDRA
     c = ofVertices(c, t - 0.5 * depth);
+#endif
+    float next = light.a * exp2(-c.a * (depth * unitsPerDepth));
+#ifdef ADAPTIVE
+    if (!suitsStep(light.a - next)) return false;
 #endif
 #ifdef SHADING
     c = lit(c, place - 0.5 * depth * VOXEL_RATE(direction), t - 0.5 * depth);
@@ -111,11 +120,10 @@ void addRun(vec3 origin, vec3 direction, float t, vec3 place, float depth, float
     c.rgb = painted(c.rgb, origin + (t - 0.5 * depth) * direction);
 #endif
     c.rgb = fogged(c.rgb, t - 0.5 * depth);
-    COUNT_SAMPLE
-    float next = light.a * exp2(-c.a * (depth * unitsPerDepth));
     light = vec4(light.rgb + (light.a - next) * c.rgb, next);
     entry = nextEntry;
     integral = nextIntegral;
+    return true;
 }
 
 // Light of the steps that reach into what the brick shows, front to back: premultiplied colour, opacity. The ends
@@ -143,9 +151,19 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
     }
     float t = max(start, tNear + i * dt);
     vec3 first = placeOnRay(origin, direction, t), place = first; // as for steps without integrals
-    beginCut(cutPoint(origin, direction, t));
     float entry = tableEntry(place);
     vec4 integral = tableIntegral(entry);
+#ifdef ADAPTIVE
+    float begin = t, all = min(stop, tNear + last * dt) - begin, taken = 0.0; // periods
+    if (stride > 1.0) stretch = LONGEST_STRETCH; // of one value: all are as good
+    if (all > 0.0) do {
+        float ahead = taken * dt, length = stretch, depth = min(length * dt, all - ahead);
+        place = first + (ahead + depth) * rate;
+        bool added = addRun(origin, direction, begin + ahead + depth, place, depth, unitsPerDepth, entry, integral, light);
+        taken += added ? length : 0.0;
+    } while (taken * dt < all && light.a > opaqueEnough);
+#else
+    beginCut(cutPoint(origin, direction, t));
     float depth = min(stop, tNear + (i + 1.0) * dt) - t; // of the first step, which may be cut
     float ahead = depth; // of the first place
     place = first + ahead * rate;
@@ -157,6 +175,7 @@ vec4 march(vec3 origin, vec3 direction, float tNear, float tFar, vec2 shown)
         ahead += depth;
         place = first + ahead * rate;
     }
+#endif
     return vec4(light.rgb, 1.0 - light.a);
 }
 

@@ -1,0 +1,156 @@
+// An error that is asked for is kept by lit volumes, too.
+
+#include "TestLights.h"
+
+#include <support/Choices.h>
+#include <support/GLTest.h>
+#include <support/Instrumented.h>
+
+#include <osg/MatrixTransform>
+
+#include <cmath>
+#include <random>
+
+namespace LitToleranceTest {
+
+using namespace osgVolumizer;
+using namespace osgVolumizer::test;
+using support::FloatImage;
+using support::RenderOptions;
+
+namespace {
+
+constexpr int SIZE = 24;
+
+double noise(const glm::dvec3& p)
+{
+    const auto i = static_cast<unsigned>(p.x + SIZE * (p.y + SIZE * p.z));
+    return double(std::mt19937(i)()) / 4294967296.0;
+}
+
+// As rough as what scanners make of something smooth.
+double roughBumps(const glm::dvec3& p)
+{
+    return 0.9 * bumps(p) + 0.1 * noise(p);
+}
+
+struct Case
+{
+    const char* name;
+    double (*field)(const glm::dvec3&);
+    Points points;
+};
+
+std::vector<Case> cases()
+{
+    const Points jumps{{0.0, {0.2, 0.4, 0.9, 0.0}},
+                       {0.5, {0.2, 0.4, 0.9, 0.0}},
+                       {0.5, {1.0, 0.6, 0.1, 0.2}},
+                       {1.0, {0.9, 0.2, 0.1, 0.6}}};
+    return {{"smooth", bumps, smoothPoints(0.2)},
+            {"jumps", bumps, jumps},
+            {"rough", roughBumps, smoothPoints(0.2)},
+            {"rough jumps", roughBumps, jumps},
+            {"noise", noise, smoothPoints(0.1)}};
+}
+
+RenderOptions view(const osg::Vec3d& eye, bool perspective)
+{
+    RenderOptions options = RenderOptions().size(48, 48).lookAt(eye, {11, 11, 11}, {0, 0, 1});
+    return perspective ? options.perspective(30.0) : options.orthographic(18.0);
+}
+
+std::vector<RenderOptions> views()
+{
+    return {view({50, -30, 35}, true), view({-28, 40, 37}, true), view({11.3, -50, 10.8}, false)};
+}
+
+// One as bright as white, from the side.
+TestLight lamp()
+{
+    TestLight light;
+    light.position = {-0.5, -0.7, 0.6, 0.0};
+    return light;
+}
+
+TestLight headLight(const RenderOptions& options)
+{
+    TestLight light;
+    light.position = glm::inverse(support::toGlm(options.view)) * glm::dvec4(0, 0, 1, 0);
+    return light;
+}
+
+// A scene, and what there is to see of it in several views.
+class Examiner
+{
+public:
+    Examiner(const Case& c, bool fromEye)
+        : _voxels(makeVoxels(glm::ivec3(SIZE), c.field)), _twin(makeTwin(_voxels, c.points)),
+          _scene(new osg::Group)
+    {
+        _twin.node->setShading(true);
+        _scene->addChild(_twin.node);
+        // Without any, volumes have a head light.
+        if (!fromEye) _scene->addChild(makeSource(lamp(), 0, *_scene->getOrCreateStateSet()));
+        for (const RenderOptions& options : views()) {
+            oracle::Volume volume = _twin.oracle;
+            lightOracle(volume, gridOf(*_voxels), {fromEye ? headLight(options) : lamp()}, options,
+                        _twin.node->getMaterial());
+            oracle::Scene scene = oracleScene(volume);
+            scene.tolerance = 1e-6;
+            _expected.push_back(oraclePicture(scene, options));
+        }
+    }
+
+    VolumeAppearance& node() { return *_twin.node; }
+    const VolumeGeometry& geometry() const
+    {
+        return dynamic_cast<const VolumeGeometry&>(*_twin.node->getChild(0));
+    }
+
+    double worstError()
+    {
+        double worst = 0.0;
+        for (std::size_t i = 0; i < _expected.size(); ++i) {
+            const support::Mask covered = support::coveredPixels(_expected[i], 1e-3f);
+            const FloatImage image = support::renderScene(_scene, views()[i]);
+            worst = std::max(worst, support::compare(image, _expected[i], covered).rmse);
+        }
+        return worst;
+    }
+
+private:
+    osg::ref_ptr<Voxels> _voxels;
+    TwinVolume _twin;
+    osg::ref_ptr<osg::Group> _scene;
+    std::vector<FloatImage> _expected;
+};
+
+using LitTolerance = support::GLTest;
+
+TEST_F(LitTolerance, IsKept)
+{
+    for (const Case& c : cases())
+        for (const bool fromEye : {true, false}) {
+            if (support::INSTRUMENTED && (fromEye || c.field != roughBumps)) continue;
+            Examiner examiner(c, fromEye);
+            for (const double tolerance : {1e-2, 1e-3}) {
+                ASSERT_TRUE(examiner.node().setErrorTolerance(tolerance));
+                ASSERT_TRUE(support::waitForChoice(examiner.node()));
+                const VolumeAppearance::Settings settings =
+                    examiner.node().getSettingsInForce(examiner.geometry());
+                const double error = examiner.worstError();
+                std::printf("  %s%s, tolerance %g: %.2e, expected %.2e, lookup %d\n", c.name,
+                            fromEye ? ", from the eye" : "", tolerance, error,
+                            settings.expectedError, int(settings.lookup));
+                EXPECT_TRUE(settings.shading);
+                EXPECT_LE(error, std::max(tolerance, settings.expectedError))
+                    << c.name << ", tolerance " << tolerance;
+                EXPECT_LE(settings.expectedError, tolerance) << c.name;
+            }
+        }
+}
+
+} // namespace
+
+} // namespace LitToleranceTest
