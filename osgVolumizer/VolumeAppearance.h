@@ -107,11 +107,13 @@ public:
         /// with a ray function that gathers values are not painted.
         PAINT
     };
-    /// Selects how gradients for shading are found. Both are central differences over a sample's
-    /// distance.
+    /// Selects how gradients for shading are found: central differences over a sample's distance,
+    /// since the derivative of what is linear between samples jumps at each of them, and is of
+    /// first order only.
     enum Gradients
     {
-        /// Six more samples of the voxels each time; no memory.
+        /// Six more samples of the voxels each time, and no memory; of CUBIC, whose derivative is
+        /// continuous, that, at the price of one more sample.
         ON_THE_FLY,
         /// One sample of a texture that holds gradients besides values; four times the memory (of
         /// 8-bit voxels eight times).
@@ -203,14 +205,16 @@ public:
     const core::SamplingParameters& getSamplingParameters() const { return _sampling; }
 
     /// The root mean square error, in units of full intensity, that sampling may make in a picture:
-    /// the cheapest of equal steps, with the table or its integrals, and of CELL_BY_CELL is chosen
-    /// by what each makes of some random rays through the data, and the sampling period is not
-    /// used. One choice for all views. Kept from 1e-2 to 1e-5 with voxels of any kind; where not,
-    /// the least is taken, and said once: see Settings::expectedError. A frame spends some 10 ms on
-    /// it after a change of data or table; the rest is done by another thread, and meanwhile, for
-    /// about a second, frames are as fine as any data need.
-    /// Composited slabs of voxels of one component, without shading. 0 (default): as the period
-    /// says.
+    /// the cheapest of equal steps, with the table or its integrals, of steps that are as long as
+    /// the light that they give allows, and of CELL_BY_CELL is chosen by what each makes of some
+    /// random rays through the data, and the sampling period is not used. One choice for all views.
+    /// Kept from 1e-2 to 1e-5 with voxels of any kind; where not, the least is taken, and said
+    /// once: see Settings::expectedError. What is lit is judged as lit by one light, white and as
+    /// bright as 1, from the eye and from elsewhere; several are off by as much more as they are
+    /// brighter. A frame spends some 10 ms on it after a change of data or table, lit 15; the rest
+    /// is done by another thread, and meanwhile, for about a second, frames are as fine as any data
+    /// need.
+    /// Composited slabs of voxels of one component. 0 (default): as the period says.
     ReportedStatus setErrorTolerance(double rootMeanSquare);
     double getErrorTolerance() const { return _errorTolerance; }
     /// Seconds that a frame may take while the view moves: the period is lengthened little by

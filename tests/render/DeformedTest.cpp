@@ -1,11 +1,11 @@
 // Deformed volumes are whole volumes: whatever an appearance asks for, one that is bent by a
 // millionth shows what one that is not bent does. The one is walked through tetrahedron by
 // tetrahedron, the other is one convex region.
+#include "DeformedLattice.h"
 #include "Volumes.h"
 
 #include <osgVolumizer/VolumeCut.h>
 
-#include <oracles/TestMeshes.h>
 #include <support/GLTest.h>
 #include <support/Hooks.h>
 #include <support/Precision.h>
@@ -22,28 +22,6 @@ using A = VolumeAppearance;
 namespace {
 
 constexpr int SIZE = 25; // voxels per axis
-
-// A lattice of tetrahedra over all voxels, as voxel coordinates and as positions; `bend` is what
-// one point inside is off by, in voxels.
-osg::ref_ptr<VolumeGeometry> lattice(double bend, int n = 4)
-{
-    oracle::TetraMesh mesh = oracle::latticeMesh(glm::ivec3(n));
-    oracle::jitter(mesh, 0.2 / n, 5);
-    core::TetraSet set;
-    set.vertices = core::VertexArray(core::VertexLayout::T3F_V3F);
-    set.vertices.resize(mesh.points.size());
-    const std::vector<bool> outer = oracle::boundaryPoints(mesh);
-    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-        const glm::dvec3 voxel = double(SIZE - 1) * mesh.points[i];
-        set.vertices.setPosition(i, voxel);
-        set.vertices.setVoxelCoordinate(i, voxel + (outer[i] ? 0.0 : bend));
-    }
-    for (const auto& cell : mesh.cells)
-        set.indices.insert(set.indices.end(), cell.begin(), cell.end());
-    osg::ref_ptr<VolumeGeometry> geometry = new VolumeGeometry;
-    EXPECT_TRUE(geometry->setTetraSet(std::move(set)).ok());
-    return geometry;
-}
 
 support::RenderOptions view()
 {
@@ -88,7 +66,7 @@ protected:
     osg::ref_ptr<osg::Group> _root = new osg::Group;
     osg::ref_ptr<Voxels> _voxels;
     osg::ref_ptr<A> _volume;
-    osg::ref_ptr<osg::Node> _straight, _bent = lattice(1e-6);
+    osg::ref_ptr<osg::Node> _straight, _bent = deformedLattice(SIZE, 1e-6);
 };
 
 } // namespace
@@ -153,7 +131,7 @@ TEST_F(Deformed, LeapsOverEmptyCells)
         makeTable({{0.0, {0, 0, 0, 0}}, {0.7, {0, 0, 0, 0}}, {1.0, {1, 0.5, 0, 0.6}}}));
     _volume->setVoxels(makeBlob(glm::ivec3(SIZE), 2.5));
     _volume->setSamplingPeriod(osg::Vec3d(0.05, 0.05, 0.05));
-    _volume->setChild(0, lattice(1e-6, 2));
+    _volume->setChild(0, deformedLattice(SIZE, 1e-6, 2));
     const auto viewOf = [](bool skipping) {
         return support::prepared(view(), [skipping](osgViewer::Viewer& viewer) {
             support::viewHooks(viewer).skipping = skipping;
@@ -188,7 +166,7 @@ TEST_F(Deformed, KeepsAnErrorTolerance)
 TEST_F(Deformed, ItsSegmentsAreSecondOrder)
 {
     // Really bent, against the finest.
-    _bent = lattice(1.5);
+    _bent = deformedLattice(SIZE, 1.5);
     std::vector<double> periods, errors;
     const auto pictureAt = [&](double period) {
         _volume->setSamplingPeriod(osg::Vec3d(period, period, period));

@@ -93,6 +93,35 @@ TEST_F(Shading, NormalsFollowAnyAffineTransform)
               3e-4);
 }
 
+TEST_F(Shading, OfCubicInterpolationByItsDerivative)
+{
+    osg::ref_ptr<Voxels> voxels = makeVoxels(glm::ivec3(SIZE), bumps);
+    const std::vector<TestLight> lights = someLights();
+    const RenderOptions options = view();
+    TwinVolume twin = makeTwin(voxels, TABLE);
+    twin.node->setShading(true);
+    twin.node->setInterpolation(VolumeAppearance::CUBIC);
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        scene->addChild(makeSource(lights[i], int(i), *scene->getOrCreateStateSet()));
+    scene->addChild(twin.node);
+    const auto cubic = gridOf(*voxels, oracle::Grid::CUBIC);
+    twin.oracle = oracle::voxelVolume(cubic, glm::ivec3(SIZE), oracle::Table(TABLE));
+    twin.setPeriod(0.25);
+    const FloatImage image = support::renderScene(scene, options);
+    const auto error = [&](bool derivative) {
+        oracle::Volume volume = twin.oracle;
+        lightOracle(volume, cubic, lights, options, twin.node->getMaterial(), derivative);
+        oracle::Scene expected = oracleScene(volume);
+        expected.tolerance = 1e-7;
+        return support::compare(image, oraclePicture(expected, options),
+                                awayFromSilhouettes(expected, options))
+            .rmse;
+    };
+    EXPECT_LT(error(true), 3e-4);
+    EXPECT_GT(error(false), 2.0 * error(true)); // it is no difference of values
+}
+
 TEST_F(Shading, PrecomputedGradientsShowTheSame)
 {
     // One-sided differences at the border blend a little differently.

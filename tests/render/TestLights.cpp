@@ -10,14 +10,14 @@ namespace test {
 namespace blinn {
 namespace {
 
-// Central differences as documented, less at the last samples; in field units.
-glm::dvec3 gradientOf(const oracle::Grid& grid, const glm::dvec3& p)
+// Central differences over a step, less at the last samples; in field units.
+glm::dvec3 gradientOf(const oracle::Grid& grid, const glm::dvec3& p, double step)
 {
     glm::dvec3 g;
     for (int a = 0; a < 3; ++a) {
         glm::dvec3 low = p, high = p;
-        low[a] = std::max(p[a] - 1.0, 0.0);
-        high[a] = std::min(p[a] + 1.0, double(grid.size()[a] - 1));
+        low[a] = std::max(p[a] - step, 0.0);
+        high[a] = std::min(p[a] + step, double(grid.size()[a] - 1));
         g[a] = (grid.value(high) - grid.value(low)) / (high[a] - low[a]);
     }
     return g;
@@ -93,14 +93,14 @@ std::vector<TestLight> someLights()
 
 void lightOracle(oracle::Volume& volume, std::shared_ptr<oracle::Grid> grid,
                  const std::vector<TestLight>& lights, const support::RenderOptions& options,
-                 const VolumeAppearance::Material& material)
+                 const VolumeAppearance::Material& material, bool derivative)
 {
     const glm::dmat4 view = support::toGlm(options.view);
     const glm::dmat3 toEye(view * volume.objectToWorld * glm::inverse(volume.objectToField));
     const glm::dmat3 normalToEye = glm::inverse(glm::transpose(toEye));
     const bool perspective = options.projection(3, 3) == 0.0;
     volume.shade = [=](const glm::dvec3& color, const glm::dvec3& field, const glm::dvec3& eye) {
-        const glm::dvec3 g = normalToEye * blinn::gradientOf(*grid, field);
+        const glm::dvec3 g = normalToEye * blinn::gradientOf(*grid, field, derivative ? 1e-5 : 1.0);
         const double length = glm::length(g);
         const glm::dvec3 n = length > 0.0 ? g / length : g;
         const glm::dvec3 toViewer = perspective ? -glm::normalize(eye) : glm::dvec3(0, 0, 1);

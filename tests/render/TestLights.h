@@ -25,10 +25,11 @@ osg::ref_ptr<osg::LightSource> makeSource(const TestLight& light, int number, os
 std::vector<TestLight> someLights();
 
 /// Makes the oracle's volume shade as documented: Blinn-Phong, on central differences, less at the
-/// last samples. `objectToEye` may be any affine map.
+/// last samples, or of the derivative of what the grid interpolates. `objectToEye` may be any
+/// affine map.
 void lightOracle(oracle::Volume& volume, std::shared_ptr<oracle::Grid> grid,
                  const std::vector<TestLight>& lights, const support::RenderOptions& options,
-                 const VolumeAppearance::Material& material);
+                 const VolumeAppearance::Material& material, bool derivative = false);
 
 } // namespace test
 } // namespace osgVolumizer

@@ -56,10 +56,11 @@ struct ShownRay
 class Judge
 {
 public:
-    Judge(const PeriodQuestion& question, const std::vector<CellRay>& rays) : _question(question)
+    Judge(const PeriodQuestion& question, const std::vector<CellRay>& rays, std::size_t count)
+        : _question(question)
     {
         const double truth = question.shading ? LIT_TRUTH : TRUTH;
-        for (std::size_t i = 0; i < rays.size(); ++i) {
+        for (std::size_t i = 0; i < std::min(count, rays.size()); ++i) {
             const double rough = rays[i].integrate(*question.table, LONGEST, {VISIBLE}).a;
             if (!(rough > VISIBLE)) continue;
             const glm::dvec2 part = rays[i].shownPart(*question.table);
@@ -199,6 +200,7 @@ Candidate stepsFor(const PeriodQuestion& q, Judge& judge, RayRule rule, double m
                 longer = std::pow(1.0 / RATIO,
                                   std::log(q.tolerance / error) / std::log(longerError / error));
             candidate.choice.periodVoxel *= longer;
+            if (longer > 1.0) candidate.choice.error = q.tolerance;
             candidate.cost /= longer;
             break;
         }
@@ -216,9 +218,10 @@ bool isBetter(const Candidate& a, const Candidate& b)
 
 } // namespace
 
-PeriodAnswer choosePeriod(const PeriodQuestion& question, const std::vector<CellRay>& rays)
+PeriodAnswer choosePeriod(const PeriodQuestion& question, const std::vector<CellRay>& rays,
+                          std::size_t count)
 {
-    Judge judge(question, rays);
+    Judge judge(question, rays, count);
     if (judge.isEmpty()) {
         PeriodAnswer nothing;
         nothing.choice.periodVoxel = LONGEST;
@@ -246,7 +249,7 @@ PeriodAnswer choosePeriod(const PeriodQuestion& question, const std::vector<Cell
 PeriodChoice choosePeriod(const PeriodQuestion& question, const FractionField& field,
                           const Box3d& box, const glm::dmat3& voxelToUnits, bool nearest)
 {
-    if (box.empty()) return choosePeriod(question, {}).choice;
+    if (box.empty()) return choosePeriod(question, {}, 0).choice;
     RandomRays random(box, voxelToUnits, nearest, question.shading != nullptr);
     std::vector<CellRay> rays;
     std::size_t cells = 0;
@@ -256,7 +259,7 @@ PeriodChoice choosePeriod(const PeriodQuestion& question, const FractionField& f
             rays.push_back(random.next(field));
             cells += rays.back().cellCount();
         }
-        answer = choosePeriod(question, rays);
+        answer = choosePeriod(question, rays, count);
         if (!answer.wantsMore || cells >= MOST_RAY_CELLS) break;
     }
     answer.choice.filterError =

@@ -196,17 +196,17 @@ private:
 };
 
 // Another thread's part.
-void decide(SamplingChoices::Answer& answer, const Rays& rays, bool mayGrow)
+void decide(SamplingChoices::Answer& answer, const Rays& rays, std::size_t count, bool mayGrow)
 {
     const core::IntervalTable exact = core::makeIntervalTable(*answer.function, 0.0);
     core::PeriodQuestion question = answer.question;
     question.exact = &exact;
-    const core::PeriodAnswer found = core::choosePeriod(question, rays);
+    const core::PeriodAnswer found = core::choosePeriod(question, rays, count);
     std::lock_guard<std::mutex> lock(answer.mutex);
     answer.choice = found.choice;
     answer.choice.filterError = answer.filterError;
     answer.known = !found.wantsMore || !mayGrow;
-    answer.wanted = 2 * rays.size();
+    answer.wanted = 2 * count;
 }
 
 // A frame's part: true when there are as many rays as are wanted.
@@ -285,7 +285,7 @@ std::optional<core::PeriodChoice> SamplingChoices::get(const Voxels& voxels,
     }
     if (answer->deciding) return std::nullopt;
     if (!answer->sampled) { // nothing shows
-        answer->choice = core::choosePeriod(answer->question, {}).choice;
+        answer->choice = core::choosePeriod(answer->question, {}, 0).choice;
         answer->known = true;
         return answer->choice;
     }
@@ -303,10 +303,12 @@ std::optional<core::PeriodChoice> SamplingChoices::get(const Voxels& voxels,
     const bool mayGrow = 2 * answer->wanted <= core::MOST_RAYS / (sampled.lit ? FEWER_LIT : 1) &&
                          sampled.cells < core::MOST_RAY_CELLS;
     const std::shared_ptr<const Rays> rays = sampled.rays;
+    const std::size_t count = answer->wanted; // others may have wanted more
     const auto decision = std::make_shared<Decision>(answer);
     lock.unlock();
-    ChoiceQueue::instance().ask(
-        this, [decision, rays, mayGrow] { decide(decision->answer(), *rays, mayGrow); });
+    ChoiceQueue::instance().ask(this, [decision, rays, count, mayGrow] {
+        decide(decision->answer(), *rays, count, mayGrow);
+    });
     return std::nullopt;
 }
 

@@ -45,7 +45,7 @@ public:
         const TableChoice choice =
             voxels ? chooseTable(appearance, *prepared, leastPrecision()) : TableChoice();
         VolumeAppearance::Settings settings = render::settingsInForce(
-            appearance, *prepared, choice.table.lookup(), choice.exactFiltering);
+            appearance, *prepared, choice.table.lookup(), choice.exactFiltering, choice.adaptive);
         settings.expectedError = choice.expectedError;
         settings.refining = choice.refining;
         explainError(appearance.getErrorTolerance(), choice.expectedError, settings.reasons);

@@ -279,7 +279,8 @@ bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry
 
 VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
                                            const PreparedGeometry& prepared,
-                                           VolumeAppearance::Lookup table, bool exactFiltering)
+                                           VolumeAppearance::Lookup table, bool exactFiltering,
+                                           bool adaptive)
 {
     VolumeAppearance::Settings settings;
     Reasons& reasons = settings.reasons;
@@ -296,6 +297,9 @@ VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
     if (settings.exactFiltering && !appearance.getExactFiltering())
         reasons.push_back("texture units may filter too coarsely for the error tolerance; "
                           "filtering is exact");
+    if (adaptive)
+        reasons.emplace_back("the error tolerance is kept by steps that are as long as the light "
+                             "that they give allows");
     explainPaint(appearance, settings);
     return settings;
 }

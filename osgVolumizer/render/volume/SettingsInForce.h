@@ -53,10 +53,11 @@ bool canKeepTolerance(const VolumeAppearance& appearance, const PreparedGeometry
                       Reasons& reasons);
 
 /// All of them together. `table`: how that which is used is read.
-/// `exactFiltering`: whether an error tolerance needs that. Adds what is expected of a tolerance.
+/// `exactFiltering`: whether an error tolerance needs that; `adaptive`: whether steps adapt for it.
 VolumeAppearance::Settings settingsInForce(const VolumeAppearance& appearance,
                                            const PreparedGeometry& prepared,
-                                           VolumeAppearance::Lookup table, bool exactFiltering);
+                                           VolumeAppearance::Lookup table, bool exactFiltering,
+                                           bool adaptive);
 /// That an error is expected which is more than what was asked for; nothing where none is known.
 void explainError(double tolerance, double expectedError, Reasons& reasons);
 

@@ -20,12 +20,56 @@ uniform vec2 gradientDecode; // scale, offset
 
 vec3 gradientAt(vec3 place)
 {
+#if defined(EXACT)
+    ivec3 cell;
+    vec3 f;
+    cellAt(place, cell, f);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 8; ++i) {
+        ivec3 step = ivec3(i & 1, (i >> 1) & 1, i >> 2), at = min(cell + step, textureSize(voxels, 0) - 1);
+        vec3 w = mix(1.0 - f, f, vec3(step));
+#define GRADIENT_OF(step) texelFetch(step, at, 0).rgb
+        sum += w.x * w.y * w.z * OF_STEPS(GRADIENT_OF);
+    }
+    return sum * gradientDecode.x + gradientDecode.y;
+#else
 #ifdef FETCH
     place = (place + 0.5) / vec3(textureSize(voxels, 0));
 #endif
     place = filterPlace(place, textureSize(voxels, 0));
 #define GRADIENT_IN(step) textureLod(step, place, 0.0).rgb
     return OF_STEPS(GRADIENT_IN) * gradientDecode.x + gradientDecode.y;
+#endif
+}
+#elif defined(CUBIC)
+// Weights of the derivatives of what cubicWeights() are those of.
+vec4 cubicSlopes(float f)
+{
+    return vec4((4.0 - 3.0 * f) * f - 1.0, (9.0 * f - 10.0) * f, (8.0 - 9.0 * f) * f + 1.0, (3.0 * f - 2.0) * f) * 0.5;
+}
+
+// The derivative of the interpolant: at samples, central differences.
+vec3 gradientAt(vec3 place)
+{
+    ivec3 cell;
+    vec3 f;
+    cellAt(place, cell, f);
+    vec4 wx = cubicWeights(f.x), wy = cubicWeights(f.y), wz = cubicWeights(f.z);
+    vec4 sx = cubicSlopes(f.x), sy = cubicSlopes(f.y), sz = cubicSlopes(f.z);
+    vec3 sum = vec3(0.0);
+    for (int k = 0; k < 4; ++k)
+        for (int j = 0; j < 4; ++j) {
+            vec4 row;
+            for (int i = 0; i < 4; ++i)
+#ifdef RGBA
+                row[i] = texelAt(cell + ivec3(i, j, k) - 1).a;
+#else
+                row[i] = texelAt(cell + ivec3(i, j, k) - 1);
+#endif
+            float value = dot(row, wx);
+            sum += vec3(dot(row, sx) * wy[j] * wz[k], value * sy[j] * wz[k], value * wy[j] * sz[k]);
+        }
+    return sum * VOXEL_LENGTH;
 }
 #else
 float scalarAt(vec3 place)
