@@ -23,10 +23,7 @@ constexpr double DOUBT = 0.15;
 constexpr std::size_t FEWEST_SHOWN = 400;
 constexpr double LEAP = 4.0;     // what shows nothing is leapt over, but for this, voxels
 constexpr double VISIBLE = 1e-3; // opacity of a ray that shows something
-// Longest piece of what is taken for the truth, voxels; normals turn faster than values change.
-constexpr double TRUTH = 0.125, LIT_TRUTH = 1.0 / 32.0;
-constexpr double FINEST = 0.25, LIT_FINEST = 0.0625; // longest piece that may be chosen
-constexpr double LONGEST = 8.0, SHORTEST = 0.0625;   // periods, voxels
+constexpr double LONGEST = 8.0;  // period, voxels
 // Errors of few rays, in few directions, are off by this.
 constexpr double SAFETY = 1.5;
 // The part of a tolerance that filtering may take. Squares of errors add, so that it is within what
@@ -42,6 +39,24 @@ constexpr double VIEW = 500.0;
 constexpr double FEW = 30.0;
 // Floats and the texture units of a card, which take no part in this.
 constexpr double LEAST_ERROR = 2e-6;
+
+// The shortest that are tried, voxels.
+struct Shortest
+{
+    double truth;  // longest piece of what is taken for the truth
+    double piece;  // longest one that may be chosen
+    double period; // of steps
+};
+
+// Normals turn faster than values change.
+Shortest shortestFor(const PeriodQuestion& q)
+{
+    if (q.shading)
+        return q.tolerance < 3e-4 ? Shortest{1.0 / 64.0, 1.0 / 32.0, 1.0 / 32.0}
+                                  : Shortest{1.0 / 32.0, 1.0 / 16.0, 1.0 / 16.0};
+    return q.tolerance < 3e-5 ? Shortest{1.0 / 16.0, 1.0 / 8.0, 1.0 / 16.0}
+                              : Shortest{1.0 / 8.0, 1.0 / 4.0, 1.0 / 16.0};
+}
 
 // A ray that shows something, and what.
 struct ShownRay
@@ -59,7 +74,7 @@ public:
     Judge(const PeriodQuestion& question, const std::vector<CellRay>& rays, std::size_t count)
         : _question(question)
     {
-        const double truth = question.shading ? LIT_TRUTH : TRUTH;
+        const double truth = shortestFor(question).truth;
         for (std::size_t i = 0; i < std::min(count, rays.size()); ++i) {
             const double rough = rays[i].integrate(*question.table, LONGEST, {VISIBLE}).a;
             if (!(rough > VISIBLE)) continue;
@@ -167,7 +182,7 @@ Candidate cellsFor(const PeriodQuestion& q, Judge& judge)
 {
     Candidate candidate;
     candidate.choice.rule = RayRule::CELLS;
-    const double finest = q.shading ? LIT_FINEST : FINEST;
+    const double finest = shortestFor(q).piece;
     for (double longest = PeriodChoice::ONE_PIECE; longest > 0.9 * finest; longest *= 0.5) {
         candidate.choice.periodVoxel = longest;
         candidate.choice.error = judge.error(RayRule::CELLS, longest);
@@ -187,7 +202,8 @@ Candidate stepsFor(const PeriodQuestion& q, Judge& judge, RayRule rule, double m
     candidate.choice.rule = rule;
     candidate.choice.error = std::numeric_limits<double>::infinity();
     double longerError = 0.0;
-    for (double period = LONGEST; period > 0.999 * SHORTEST; period *= RATIO) {
+    const double shortest = shortestFor(q).period;
+    for (double period = LONGEST; period > 0.999 * shortest; period *= RATIO) {
         const double error = judge.error(rule, period);
         candidate.choice.periodVoxel = period;
         candidate.choice.error = error;

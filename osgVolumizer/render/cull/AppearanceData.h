@@ -5,6 +5,9 @@
 #include "FrameTimes.h"
 #include "SamplingChoices.h"
 
+#include <atomic>
+#include <memory>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -16,6 +19,8 @@ public:
     TableTextures tables;
     SamplingChoices choices;
     FrameTimes frameTimes;
+    /// Of the lights of any view that it was drawn in, and 1 at least.
+    std::shared_ptr<std::atomic<double>> brightness = std::make_shared<std::atomic<double>>(1.0);
 
     void resizeGLObjectBuffers(unsigned int maximum) override
     {

@@ -73,6 +73,7 @@ TableTexture chooseSampling(VolumeInstance& volume, osgUtil::CullVisitor& visito
             : chooseTable(appearance, *volume.prepared, precision);
     volume.exactFiltering = choice.exactFiltering;
     volume.adaptsSteps = choice.adaptive;
+    if (choice.periodVoxel) volume.brightness = renderData<AppearanceData>(appearance)->brightness;
     volume.keepsError = choice.periodVoxel.has_value();
     if (choice.periodVoxel) volume.sampling.periodVoxel = glm::dvec3(*choice.periodVoxel);
     Reasons reasons;

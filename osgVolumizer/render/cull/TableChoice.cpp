@@ -4,6 +4,8 @@
 #include "../volume/SettingsInForce.h"
 #include "AppearanceData.h"
 
+#include <cmath>
+
 namespace osgVolumizer {
 namespace render {
 
@@ -53,7 +55,10 @@ SamplingQuestion questionFor(const VolumeAppearance& appearance, const PreparedG
     const A::RayFunction function = usedRayFunction(appearance, prepared, ofOthers);
     if (usesShading(appearance, prepared, function, ofOthers)) {
         const A::Material& m = appearance.getMaterial();
-        question.shading = core::RayShading{m.ambient, m.diffuse, m.specular, m.shininess};
+        // Powers of two, so that small changes of a light change nothing.
+        const double brightness = std::exp2(std::ceil(std::log2(*data->brightness)));
+        question.shading = core::RayShading{m.ambient, m.diffuse * brightness,
+                                            m.specular * brightness, m.shininess};
     }
     return question;
 }
@@ -64,10 +69,13 @@ core::PeriodChoice safeChoice(const SamplingQuestion& question)
     core::PeriodChoice choice;
     if (question.cells) {
         // Of white noise, the worst that there is, pieces as long as cells are off by up to 1.4e-3,
-        // halves by 1.2e-4.
+        // halves by 1.2e-4, and so on: they are of third order at least.
         const double tolerance = question.tolerance;
         choice.rule = core::RayRule::CELLS;
-        choice.periodVoxel = tolerance >= 3e-3 ? choice.ONE_PIECE : tolerance >= 2e-4 ? 0.5 : 0.25;
+        choice.periodVoxel = tolerance >= 3e-3   ? choice.ONE_PIECE
+                             : tolerance >= 2e-4 ? 0.5
+                             : tolerance >= 2e-5 ? 0.25
+                                                 : 0.125;
         if (question.shading) choice.periodVoxel *= 0.25; // normals turn faster than values change
     } else {
         choice.rule =

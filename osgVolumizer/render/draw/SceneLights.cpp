@@ -4,6 +4,7 @@
 
 #include <osg/Light>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -56,6 +57,16 @@ std::vector<EyeLight> lightsOf(osgUtil::RenderStage& stage)
             lights.push_back(made);
     }
     return lights;
+}
+
+double brightnessOf(const std::vector<EyeLight>& lights)
+{
+    double sum = 0.0;
+    for (const EyeLight& light : lights) {
+        const glm::vec3 most = glm::max(light.diffuse, light.specular);
+        sum += std::max({most.r, most.g, most.b, 0.0f});
+    }
+    return sum;
 }
 
 std::vector<EyeLight> enabledLights(const std::vector<EyeLight>& lights, const osg::State& state)

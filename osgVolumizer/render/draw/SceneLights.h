@@ -30,6 +30,9 @@ constexpr std::size_t MAXIMUM_LIGHTS = 8;
 /// profiles work too.
 std::vector<EyeLight> lightsOf(osgUtil::RenderStage& stage);
 
+/// All of them together: the sum of the strongest colour component of each, diffuse or specular.
+double brightnessOf(const std::vector<EyeLight>& lights);
+
 /// Those of them that are switched on for what is drawn now, at most MAXIMUM_LIGHTS; a white head
 /// light where none is, so that a lit volume is seen in a scene without lights.
 std::vector<EyeLight> enabledLights(const std::vector<EyeLight>& lights, const osg::State& state);

@@ -13,12 +13,19 @@
 #include <osgUtil/RenderStage>
 
 #include <algorithm>
+#include <atomic>
 #include <unordered_map>
 
 namespace osgVolumizer {
 namespace render {
 
 namespace {
+
+void raise(std::atomic<double>& number, double to)
+{
+    for (double now = number; to > now && !number.compare_exchange_weak(now, to);) {
+    }
+}
 
 // Tells lit volumes of the stage's lights.
 void light(const std::vector<VolumeInstance*>& volumes, osgUtil::RenderBin& bin)
@@ -29,6 +36,8 @@ void light(const std::vector<VolumeInstance*>& volumes, osgUtil::RenderBin& bin)
         if (!lights)
             lights = std::make_shared<const std::vector<EyeLight>>(lightsOf(*bin.getStage()));
         volume->lights = lights;
+        constexpr double MOST = 1000.0;
+        if (volume->brightness) raise(*volume->brightness, std::min(brightnessOf(*lights), MOST));
     }
 }
 

@@ -14,6 +14,8 @@
 
 #include <osgUtil/RenderLeaf>
 
+#include <atomic>
+#include <memory>
 #include <vector>
 
 namespace osgVolumizer {
@@ -49,6 +51,10 @@ struct VolumeInstance
     double rayDistance = 1.0;    ///< pixels between rays, where all of the volume is drawn at once
     std::uint64_t viewId = 0;    ///< see viewIdOf()
     TimeSteps steps;             ///< of voxels that have several
+
+    /// Raised to the brightness of all lights once these are known; null where that does not
+    /// matter.
+    std::shared_ptr<std::atomic<double>> brightness;
 
     // Known once sorting begins:
     std::shared_ptr<const std::vector<EyeLight>> lights; ///< null where unlit

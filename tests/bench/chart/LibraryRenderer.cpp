@@ -13,6 +13,8 @@ namespace bench {
 
 namespace {
 
+constexpr double FINEST = 1.0 / 32.0; // step, voxels
+
 /// osgVolumizer as an application uses it: a whole frame of osgViewer, update to swap.
 class LibraryRenderer : public Renderer
 {
@@ -21,10 +23,10 @@ public:
 
     std::string name() const override
     {
+        if (_options.tolerance) return "osgVolumizer, error asked for";
         std::string name = _options.slabs ? "osgVolumizer slabs" : "osgVolumizer slices";
         if (_options.brickSize) name += " bricks " + std::to_string(_options.brickSize);
         if (!_options.joined) name += " apart";
-        if (_options.tolerance) name += " tolerance";
         if (_options.cells) name += " cell by cell";
         return name;
     }
@@ -51,6 +53,8 @@ public:
     {
         Status status;
         for (const auto& appearance : _appearances) {
+            appearance->setLookup(_options.cells ? VolumeAppearance::CELL_BY_CELL
+                                                 : VolumeAppearance::AUTOMATIC_LOOKUP);
             status =
                 _options.tolerance
                     ? appearance->setErrorTolerance(1e-3 * stepVoxel)
@@ -58,6 +62,19 @@ public:
             if (!status.ok()) return status;
             if (_options.tolerance && !support::waitForChoice(*appearance))
                 return Status(ErrorCode::NOT_SUPPORTED, "no sampling was chosen");
+        }
+        return status;
+    }
+    // By steps, whatever is measured.
+    Status setFinest() override
+    {
+        Status status;
+        for (const auto& appearance : _appearances) {
+            appearance->setLookup(VolumeAppearance::AFTER_INTERPOLATION);
+            status = appearance->setErrorTolerance(0.0);
+            if (status.ok())
+                status = appearance->setSamplingPeriod(osg::Vec3d(FINEST, FINEST, FINEST));
+            if (!status.ok()) return status;
         }
         return status;
     }
@@ -103,9 +120,9 @@ private:
         appearance->setLookupTable(table);
         appearance->setTechnique(_options.slabs ? VolumeAppearance::SLABS
                                                 : VolumeAppearance::SLICES);
-        if (_options.cells) appearance->setLookup(VolumeAppearance::CELL_BY_CELL);
         appearance->addChild(VolumeGeometry::createBox(*voxels));
         appearance->setShading(_scene.shaded);
+        appearance->setGradients(VolumeAppearance::PRECOMPUTED);
         root.addChild(appearance);
         _appearances.push_back(appearance);
         return status;

@@ -20,7 +20,7 @@ const char* const usage = R"(Usage: osgVolumizerChart [options]
   --scenes A,B,..     default all
   --renderers A,B,..  of slabs cells slices slabs:BRICK slices:BRICK apart:BRICK (bricks with a
                       texture each) tolerance bare bareintegral fixed raytraced multipass vtkgpu vtkcpu
-                      volpack openvdb; default all that were built, bricks and tolerance aside
+                      volpack openvdb; default all that were built, bricks aside
   --steps A,B,..      sample distances in voxels, default 8,4,2,1,0.5,0.25,0.125; for
                       `tolerance`: the errors asked for, in thousandths. A renderer whose frames
                       take more than half a second is not measured at finer ones, nor any at
@@ -36,9 +36,9 @@ const char* const usage = R"(Usage: osgVolumizerChart [options]
 struct Arguments
 {
     std::vector<std::string> scenes;
-    std::vector<std::string> renderers{"slabs",        "cells",  "slices",    "bare",
-                                       "bareintegral", "fixed",  "raytraced", "multipass",
-                                       "vtkgpu",       "vtkcpu", "volpack",   "openvdb"};
+    std::vector<std::string> renderers{
+        "slabs",     "tolerance", "cells",  "slices", "bare",    "bareintegral", "fixed",
+        "raytraced", "multipass", "vtkgpu", "vtkcpu", "volpack", "openvdb"};
     MeasureOptions measure;
     std::string csv;
     bool profile = false;
@@ -101,7 +101,7 @@ void printPoint(const Point& p)
 
 void writePoint(std::ostream& csv, const Point& p, const ChartScene& scene, const Reference& r)
 {
-    csv << p.scene << ",\"" << scene.description << "\"," << p.renderer << ',' << p.step << ','
+    csv << p.scene << ",\"" << scene.description << "\",\"" << p.renderer << "\"," << p.step << ','
         << p.difference.pixels << ',' << r.remainingError << ',' << p.difference.rmse << ','
         << p.difference.maximum << ',' << p.difference.bias << ',' << median(p.milliseconds) << ','
         << median(p.cpuMilliseconds) << ',' << joinValues(p.milliseconds) << ','

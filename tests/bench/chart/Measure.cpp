@@ -11,10 +11,6 @@ namespace bench {
 
 namespace {
 
-// Pictures of shaded scenes are judged by the renderer's own one at this step: each shades by
-// another model.
-constexpr double SHADED_REFERENCE_STEP = 1.0 / 16.0;
-
 // A renderer whose frames take longer than this is not measured at finer steps.
 constexpr double PATIENCE_MILLISECONDS = 500.0;
 
@@ -45,13 +41,15 @@ std::vector<Entry> openAll(const ChartScene& scene, const Reference& reference,
     std::vector<Entry> entries;
     for (const RendererPtr& renderer : renderers) {
         Status status = renderer->open(scene);
-        if (status.ok() && scene.shaded) status = drawAt(*renderer, SHADED_REFERENCE_STEP);
+        // Each shades by another model, and is judged by its own finest picture.
+        if (status.ok() && scene.shaded) status = renderer->setFinest();
         if (!status.ok()) {
             printRefusal(scene, *renderer, status);
             continue;
         }
         Entry entry{renderer.get(), reference.picture, reference.mask};
         if (scene.shaded) {
+            renderer->frame();
             entry.picture = renderer->picture();
             entry.mask = support::coveredPixels(entry.picture);
         }

@@ -17,6 +17,8 @@ public:
     virtual Status open(const ChartScene& scene) = 0;
     /// Distance between samples along the view, in voxels. Not ok: it cannot draw at this one.
     virtual Status setStep(double stepVoxel) = 0;
+    /// As finely as its own pictures are judged by, where no other renderer shades as it does.
+    virtual Status setFinest() { return setStep(1.0 / 16.0); }
     /// Where the time of the last frame went, milliseconds by name; empty where that is not known.
     virtual std::map<std::string, double> split() { return {}; }
 };
