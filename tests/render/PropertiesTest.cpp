@@ -236,7 +236,7 @@ TEST_F(Properties, WhatIsIgnoredIsReportedOnce)
                                        }},
                                       {"an error tolerance needs slabs", [](A& a) {
                                            a.setErrorTolerance(1e-2);
-                                           a.setShading(true);
+                                           a.setRayFunction(A::AVERAGE);
                                        }}};
     int number = 0;
     for (const Ignored& ignored : all) {
