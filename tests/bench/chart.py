@@ -135,7 +135,6 @@ def draw_panel(left, top, scene, description, curves):
 def svg(scenes, clock, run):
     cells = len(scenes) + 1
     rows = math.ceil(cells / COLUMNS)
-    width, height = COLUMNS * CELL_WIDTH + 10, rows * CELL_HEIGHT + 36
     steps = sorted({p[0] for _, curves in scenes.values() for c in curves.values() for p in c})
     names = [n for n in STYLES if any(n in curves for _, curves in scenes.values())]
     notes = ["Down and to the left is better. Each mark is one distance",
@@ -145,6 +144,8 @@ def svg(scenes, clock, run):
              "is a thousandth for each voxel of a step, and what came out.",
              "Dotted: the errors that the tables of the README are for.",
              f"Times: {clock}, medians over rounds."] + run
+    legend = 19 * len(names) + 15 * (len(notes) + 3)
+    width, height = COLUMNS * CELL_WIDTH + 10, rows * CELL_HEIGHT + 36 + max(0, legend - CELL_HEIGHT)
     parts = []
     for i, (scene, (description, curves)) in enumerate(scenes.items()):
         left, top = LEFT + (i % COLUMNS) * CELL_WIDTH, TOP + (i // COLUMNS) * CELL_HEIGHT
