@@ -211,9 +211,10 @@ public:
     /// Kept from 1e-2 to 1e-5 with voxels of any kind; where not, the least is taken, and said
     /// once: see Settings::expectedError. What is lit is judged as lit by one white light, from the
     /// eye and from elsewhere, as bright as all lights of the scenes that it was drawn in. A frame
-    /// spends some 10 ms on it after a change of data or table, lit 15; the rest is done by another
-    /// thread, and meanwhile, for about a second, frames are as fine as any data need. Composited
-    /// slabs of voxels of one component. 0 (default): as the period says.
+    /// spends some 10 ms on it after a change of data or table, lit 18; the rest is done by another
+    /// thread, and meanwhile, for about a second, lit for some, frames are as fine as data of any
+    /// kind need.
+    /// Composited slabs of voxels of one component. 0 (default): as the period says.
     ReportedStatus setErrorTolerance(double rootMeanSquare);
     double getErrorTolerance() const { return _errorTolerance; }
     /// Seconds that a frame may take while the view moves: the period is lengthened little by

@@ -141,6 +141,7 @@ TEST_F(LitTolerance, IsKept)
             for (const double tolerance : {1e-2, 1e-3}) {
                 if (support::INSTRUMENTED && tolerance < 1e-2) continue;
                 ASSERT_TRUE(examiner.node().setErrorTolerance(tolerance));
+                EXPECT_LE(examiner.worstError(), tolerance) << c.name << ", before the choice";
                 ASSERT_TRUE(support::waitForChoice(examiner.node()));
                 EXPECT_LE(examiner.worstError(), tolerance) << c.name << ", " << tolerance;
                 EXPECT_LE(examiner.settings().expectedError, tolerance)

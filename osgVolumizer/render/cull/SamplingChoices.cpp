@@ -21,7 +21,7 @@ namespace render {
 namespace {
 
 // What a frame may spend on sampling; lit rays take seven times as many samples.
-constexpr std::chrono::milliseconds PER_FRAME(8), LIT_PER_FRAME(14);
+constexpr std::chrono::milliseconds PER_FRAME(8), LIT_PER_FRAME(16);
 constexpr std::size_t FEWER_LIT = 3; // rays
 
 using Rays = std::vector<core::CellRay>;

@@ -4,6 +4,7 @@
 #include "../volume/SettingsInForce.h"
 #include "AppearanceData.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace osgVolumizer {
@@ -67,7 +68,12 @@ SamplingQuestion questionFor(const VolumeAppearance& appearance, const PreparedG
 core::PeriodChoice safeChoice(const SamplingQuestion& question)
 {
     core::PeriodChoice choice;
-    if (question.cells) {
+    if (question.shading && question.integrals.texture) {
+        // Normals turn faster than values change, and steps that adapt see more of them.
+        const double period = 0.06 * std::sqrt(question.tolerance / 1e-3);
+        choice.rule = core::RayRule::ADAPTIVE;
+        choice.periodVoxel = std::clamp(period, 1.0 / 32.0, 0.25);
+    } else if (question.cells) {
         // Of white noise, the worst that there is, pieces as long as cells are off by up to 1.4e-3,
         // halves by 1.2e-4, and so on: they are of third order at least.
         const double tolerance = question.tolerance;
@@ -76,7 +82,7 @@ core::PeriodChoice safeChoice(const SamplingQuestion& question)
                              : tolerance >= 2e-4 ? 0.5
                              : tolerance >= 2e-5 ? 0.25
                                                  : 0.125;
-        if (question.shading) choice.periodVoxel *= 0.25; // normals turn faster than values change
+        if (question.shading) choice.periodVoxel *= 0.25;
     } else {
         choice.rule =
             question.integrals.texture ? core::RayRule::INTEGRALS : core::RayRule::MIDPOINTS;
