@@ -203,6 +203,23 @@ TEST_F(CellByCell, AllElseGoesWithIt)
     }
 }
 
+// A table that begins to show something at its first value: what has that value shows nothing.
+TEST_F(CellByCell, LeapsOverTheFirstValueOfARamp)
+{
+    const glm::dvec3 middle(8.0);
+    osg::ref_ptr<A> volume = makeVolume(makeVoxels(glm::ivec3(64), [&](const glm::dvec3& p) {
+        return std::max(0.0, 1.0 - glm::length(p - middle) / 6.0);
+    }));
+    volume->setLookupTable(makeTable({{0.0, {1, 1, 1, 0.0}}, {1.0, {1, 1, 1, 0.5}}}));
+    volume->setLookup(A::CELL_BY_CELL);
+    support::SceneRenderer renderer(volume, view());
+    renderer.render();
+    const auto counters = renderer.counters();
+    EXPECT_GT(counters.at("osgVolumizer cells occupied"), 0.0);
+    EXPECT_LT(counters.at("osgVolumizer cells occupied"),
+              0.1 * counters.at("osgVolumizer cells total"));
+}
+
 // What has no cells that rays could be split at is looked up after interpolation, and that is said.
 TEST_F(CellByCell, WhereItCannotBe)
 {

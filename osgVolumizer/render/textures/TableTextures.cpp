@@ -104,8 +104,8 @@ std::shared_ptr<TableTexture> makeIntervals(const LookupTable& table, const osg:
         std::make_shared<core::IntervalTable>(core::makeIntervalTable(*made->function, SHARP));
     made->count = 2;
     auto shown = std::make_shared<std::vector<int>>(1, 0);
-    for (int i = 0; i < intervals->intervals; ++i)
-        shown->push_back(shown->back() + (intervals->largestExtinction(i) > 0.0));
+    for (const glm::vec4& texel : intervals->texels)
+        shown->push_back(shown->back() + (texel.a > 0.0f));
     made->shownEntries = std::move(shown);
     made->texture = makeTexture(intervals->texels);
     made->intervals = std::move(intervals);
@@ -237,9 +237,17 @@ bool TableTexture::shows(double lowFraction, double highFraction) const
     if (intervals) {
         if (!(lowFraction <= highFraction)) return false;
         constexpr double ROUNDING = 1e-6; // of the shader's floats
-        const auto first = static_cast<std::size_t>(intervals->find(lowFraction - ROUNDING));
-        const auto end = static_cast<std::size_t>(intervals->find(highFraction + ROUNDING)) + 1;
-        return (*shownEntries)[end] > (*shownEntries)[first];
+        const int last = intervals->find(highFraction + ROUNDING);
+        for (int i = intervals->find(lowFraction - ROUNDING); i <= last; ++i) {
+            const glm::dvec4 in(intervals->of(i));
+            const auto entry = [&in](double value) {
+                return in.z + (std::clamp(value, in.x, in.y) - in.x) * in.w;
+            };
+            const auto first = static_cast<std::size_t>(entry(lowFraction));
+            const auto end = static_cast<std::size_t>(std::ceil(entry(highFraction))) + 1;
+            if ((*shownEntries)[end] > (*shownEntries)[first]) return true;
+        }
+        return false;
     }
     // The shader's floats are off by less than a hundredth of an entry.
     const double last = count - 1.0;

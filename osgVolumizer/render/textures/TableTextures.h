@@ -27,7 +27,7 @@ struct TableTexture
     std::shared_ptr<const core::IntervalTable> intervals; ///< null where it is one of entries
     glm::vec4 low{0.0f}, high{0.0f}; ///< extinction times colour, extinction: beyond the ends
     /// Numbers of entries, and of gaps between entries (integrals only), that show something before
-    /// each. Intervals: of those that show something.
+    /// each. Intervals: of their texels.
     std::shared_ptr<const std::vector<int>> shownEntries, shownGaps;
     LookupTable::Function function; ///< of the fraction of the range
     /// How it is read.
