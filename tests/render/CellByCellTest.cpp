@@ -216,8 +216,7 @@ TEST_F(CellByCell, LeapsOverTheFirstValueOfARamp)
     renderer.render();
     const auto counters = renderer.counters();
     EXPECT_GT(counters.at("osgVolumizer cells occupied"), 0.0);
-    EXPECT_LT(counters.at("osgVolumizer cells occupied"),
-              0.1 * counters.at("osgVolumizer cells total"));
+    EXPECT_LT(counters.at("osgVolumizer cells occupied"), 30.0); // of 512
 }
 
 // What has no cells that rays could be split at is looked up after interpolation, and that is said.
