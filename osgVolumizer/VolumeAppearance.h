@@ -58,9 +58,9 @@ public:
         PREINTEGRATED,
         /// Rays are split at faces of cells between samples, and where their value turns round or
         /// passes a corner of the table; pieces are integrated to fourth order, whatever the table.
-        /// They are no longer than the period where that is less than a voxel. Two to three times
-        /// the time of a period of a voxel, at an error that is a tenth to a thousandth (Weiss and
-        /// Westermann, "Analytic ray splitting for controlled precision DVR", 2021).
+        /// They are no longer than the period. Two to three times the time of a period of a voxel,
+        /// at an error that is a tenth to a thousandth (Weiss and Westermann, "Analytic ray
+        /// splitting for controlled precision DVR", 2021).
         /// Of slabs, and one component that is not interpolated cubically; else
         /// AFTER_INTERPOLATION.
         CELL_BY_CELL

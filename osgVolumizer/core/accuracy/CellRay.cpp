@@ -186,7 +186,7 @@ void CellRay::visitPieces(const IntervalTable& table, double longestVoxel, const
     int interval = -1;
     double begin = 0.0;
     for (std::size_t i = 0; i < _ends.size(); ++i) {
-        const double length = _ends[i] - begin, longest = longestVoxel / length;
+        const double length = _ends[i] - begin, longest = PIECE_SLACK * longestVoxel / length;
         begin = _ends[i];
         const glm::dvec4 values(_values[i]);
         if (std::isnan(values.x + values.y + values.z + values.w)) {

@@ -109,6 +109,10 @@ private:
     bool _nearest;               ///< values of cells have nothing to do with one another
 };
 
+/// Pieces may be longer than their bound by this factor, or rounding would cut slivers of a cell
+/// that is just as long.
+constexpr double PIECE_SLACK = 1.001;
+
 /// Light of a piece of a ray, premultiplied colour and opacity, from colour and extinction (bits
 /// per unit) at the two points of Gauss's rule, through which both are taken for linear. Where they
 /// are smooth it is off by the fifth power of the length, so of fourth order along a ray.

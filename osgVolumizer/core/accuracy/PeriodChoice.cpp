@@ -164,8 +164,7 @@ private:
         case RayRule::CELLS:
             break;
         }
-        const bool whole = periodVoxel >= PeriodChoice::ONE_PIECE;
-        return ray.integrate(*_question.table, whole ? LONGEST : periodVoxel, options);
+        return ray.integrate(*_question.table, periodVoxel, options);
     }
 
     const PeriodQuestion& _question;

@@ -27,10 +27,9 @@ enum class RayRule
 struct PeriodChoice
 {
     RayRule rule = RayRule::MIDPOINTS;
-    /// Length of steps, and the most of a piece's; pieces are as long as they can be where it is
-    /// ONE_PIECE.
+    /// Length of steps, and the most of a piece's.
     double periodVoxel = 1.0;
-    static constexpr double ONE_PIECE = 1.0;
+    static constexpr double ONE_PIECE = 2.0; ///< longer than any cell
     /// Expected: root mean square over the components of pixels that show something; at the upper
     /// end of what the rays leave uncertain.
     double error = 0.0;

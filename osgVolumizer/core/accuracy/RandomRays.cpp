@@ -12,6 +12,13 @@ namespace core {
 
 namespace {
 
+// What directions are about, and the opposite ones. Errors are largest along axes, where
+// all rays of a view meet samples in step, and along diagonals, where cells are longest.
+const glm::ivec3 MIDDLES[RandomRays::DIRECTIONS / 2] = {
+    {1, 0, 0},  {0, 1, 0}, {0, 0, 1},  {1, 1, 0},  {1, -1, 0},  {1, 0, 1}, {-1, 0, 1}, {0, 1, 1},
+    {0, -1, 1}, {1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}, {1, 2, 4}, {-2, 4, 1}, {4, -1, 2}};
+constexpr double SPREAD = 0.08;
+
 // Central differences over one sample to each side, less at the ends of a box.
 glm::dvec3 centralDifferences(const FractionField& field, const Box3d& box, const glm::dvec3& p)
 {
@@ -50,16 +57,13 @@ CellRay RandomRays::next(const FractionField& field)
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     const auto random = [&]() { return unit(_random); };
     const double radius = 0.5 * glm::length(_box.size());
-    constexpr double COUNT = DIRECTIONS, GOLDEN = 2.399963229728653; // angle between neighbours
-    const auto i = static_cast<double>(_count++ % DIRECTIONS);
+    const std::size_t i = _count++ % DIRECTIONS;
+    const glm::dvec3 about = (i % 2 == 0 ? 1.0 : -1.0) * glm::normalize(glm::dvec3(MIDDLES[i / 2]));
     for (;;) {
-        // A spiral from the equator to a pole, and not farther from it than half a view is wide.
-        const double z = std::clamp((i + 0.5) / COUNT + 0.2 * (random() - 0.5), -1.0, 1.0);
-        const double phi = GOLDEN * i + 0.4 * (random() - 0.5);
-        const double s = std::sqrt(1.0 - z * z);
-        const glm::dvec3 direction(s * std::cos(phi), s * std::sin(phi), z);
-        const glm::dvec3 side = glm::normalize(
-            glm::cross(direction, std::abs(z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
+        const glm::dvec3 direction =
+            glm::normalize(about + SPREAD * std::sqrt(random()) * randomDirection());
+        const glm::dvec3 side = glm::normalize(glm::cross(
+            direction, std::abs(direction.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
         const double r = radius * std::sqrt(random()), angle = glm::two_pi<double>() * random();
         const glm::dvec3 point =
             _box.center() +

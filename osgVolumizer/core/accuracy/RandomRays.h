@@ -13,12 +13,14 @@ namespace osgVolumizer {
 namespace core {
 
 /// Lines through a box: as many of each direction as an orthographic view has pixels. Directions
-/// come in turn, ray i of direction i % DIRECTIONS, but for a few degrees, as within a view. The
-/// sequence is always the same.
+/// come in turn, ray i of direction i % DIRECTIONS, but for a few degrees, as within a view: the
+/// axes and diagonals of cells, along which rays differ the most from others, and some between
+/// them, each forwards and backwards, since what is opaque hides what lies behind. The sequence is
+/// always the same.
 class OSGVOLUMIZER_CORE_EXPORT RandomRays
 {
 public:
-    static constexpr std::size_t DIRECTIONS = 16; ///< spread evenly
+    static constexpr std::size_t DIRECTIONS = 32;
 
     /// Expects a box (voxel frame) that is not empty.
     /// \param voxelToUnits a vector of the voxel frame -> opacity units

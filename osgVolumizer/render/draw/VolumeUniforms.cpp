@@ -5,6 +5,8 @@
 #include "../context/ProgramInterface.h"
 #include "../context/ReportOnce.h"
 
+#include "../../core/accuracy/CellRay.h"
+
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 
@@ -24,8 +26,7 @@ void setTable(const Uniforms& uniforms, const VolumeLook& look)
     uniforms.set("lastEntry", static_cast<float>(look.table.count - 1));
     if (look.features.cells) {
         uniforms.set("intervals", look.table.intervals->intervals);
-        uniforms.set("longestPiece",
-                     look.voxelsPerSample < 0.999 ? static_cast<float>(look.step) : 1e30f);
+        uniforms.set("longestPiece", static_cast<float>(look.step * core::PIECE_SLACK));
     }
     if (!look.features.preIntegrated) return;
     uniforms.set("tableLow", look.table.low);

@@ -33,13 +33,14 @@ constexpr double ENTRY_STEP = 4e-6;
 // Bits times entries: differences of floats that are not larger are good to 1e-4 bits.
 constexpr float LARGEST_INTEGRAL = 8192.0f;
 
+// A 64th of the range is what the value commonly changes by from sample to sample.
+constexpr double WINDOW = 1.0 / 64.0;
+
 // Whether midpoint sampling at a usual rate would be off by so much that pre-integration pays; says
 // why.
-bool needsPreIntegration(const core::TransferFunction& function, const std::string& name)
+bool needsPreIntegration(const core::WindowError& error, const std::string& name)
 {
-    // A 64th of the range is what the value commonly changes by from sample to sample.
-    constexpr double WINDOW = 1.0 / 64.0, TOLERANCE = 0.03;
-    const core::WindowError error = core::windowError(function, 0.0, 1.0, WINDOW);
+    constexpr double TOLERANCE = 0.03;
     if (error.error <= TOLERANCE) return false;
     OSG_INFO << "osgVolumizer: lookup table \"" << name << "\" is pre-integrated: at "
              << error.value << " of the range, samples a " << 1.0 / WINDOW
@@ -125,9 +126,11 @@ std::shared_ptr<const TableTexture> makeTable(const LookupTable& table, const os
     TableTexture& result = *made;
     result.function = table.getNormalizedFunction(range);
     result.id = nextId++;
+    const core::WindowError missed = core::windowError(*result.function, 0.0, 1.0, WINDOW);
+    result.missed = missed.error;
     result.integrals = lookup == VolumeAppearance::PREINTEGRATED ||
                        (lookup == VolumeAppearance::AUTOMATIC_LOOKUP &&
-                        needsPreIntegration(*result.function, table.getName()));
+                        needsPreIntegration(missed, table.getName()));
     result.count = result.integrals ? ENTRIES : entriesFor(*result.function);
     std::vector<glm::vec4> texels =
         result.function->tabulateExtinction(result.count, 0.0, 1.0, false);

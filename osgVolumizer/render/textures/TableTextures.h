@@ -22,6 +22,9 @@ struct TableTexture
 {
     osg::ref_ptr<osg::TextureBuffer> texture;
     bool integrals = false;
+    /// What a sample may miss where the value changes by a 64th of the range from one to the next,
+    /// in premultiplied colour and opacity of one unit; of RayRule::CELLS nothing.
+    double missed = 0.0;
     bool shortRuns = false; ///< integrals are too large for differences over few entries
     int count = 1;          ///< entries; of intervals 2, so that an entry is a fraction
     std::shared_ptr<const core::IntervalTable> intervals; ///< null where it is one of entries
