@@ -9,7 +9,7 @@ set -u -o pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 . .ci/packages.sh
 
-FUZZ_SECONDS=${FUZZ_SECONDS:-10}
+export FUZZ_SECONDS=${FUZZ_SECONDS:-10}
 export CTEST_PARALLEL_LEVEL=${CTEST_PARALLEL_LEVEL:-2}
 jobs=$(nproc)
 failures=()
@@ -51,22 +51,33 @@ run_suite() {
     fi
 }
 
-# Fuzz targets are programs named *Fuzz; each starts from its folder under tests/fuzz/seeds, if any.
+# fuzz_target NAME: from its folder under tests/fuzz/seeds, if there is one.
+fuzz_target() {
+    local name=$1 corpus=build/fuzz/corpus/$1 seeds=tests/fuzz/seeds/$1
+    mkdir -p "$corpus"
+    [ -d "$seeds" ] || seeds=
+    echo "$name for $FUZZ_SECONDS s"
+    "build/fuzz/bin/$name" -max_total_time="$FUZZ_SECONDS" -timeout=30 -rss_limit_mb=2048 -verbosity=0 \
+        -artifact_prefix="$corpus/" "$corpus" $seeds
+}
+export -f fuzz_target
+
+# Fuzz targets are programs named *Fuzz.
 run_fuzz() {
-    local target corpus seeds
+    local target name
     cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++-14 \
         -DOSGVOLUMIZER_BUILD_TESTS=ON -DOSGVOLUMIZER_BUILD_FUZZ=ON \
         -DOSGVOLUMIZER_SANITIZE=fuzzer-no-link,address,undefined -DOSGVOLUMIZER_CCACHE=OFF || exit 1
     cmake --build build/fuzz -j "$jobs" --target fuzz || exit 1
+    rm -f build/logs/*Fuzz.failed
+    # As many at a time as there are cores; what each says comes when it is through.
+    for target in build/fuzz/bin/*Fuzz; do
+        basename "$target"
+    done | xargs -P "$jobs" -I{} bash -c 'fuzz_target {} >build/logs/{}.log 2>&1 || touch build/logs/{}.failed'
     for target in build/fuzz/bin/*Fuzz; do
         name=$(basename "$target")
-        corpus=build/fuzz/corpus/$name
-        seeds=tests/fuzz/seeds/$name
-        mkdir -p "$corpus"
-        [ -d "$seeds" ] || seeds=
-        echo "$name for $FUZZ_SECONDS s"
-        "$target" -max_total_time="$FUZZ_SECONDS" -timeout=30 -rss_limit_mb=2048 -verbosity=0 \
-            -artifact_prefix="$corpus/" "$corpus" $seeds || failures+=("$name")
+        cat "build/logs/$name.log"
+        [ ! -e "build/logs/$name.failed" ] || failures+=("$name")
     done
 }
 
